@@ -1,1 +1,1 @@
-"""What every layer uses: constants, units, errors, equality of results, what a module imports, the version."""
+"""Tools of every layer: constants, units, errors, equality of results, what a module imports, the version."""

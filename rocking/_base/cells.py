@@ -16,12 +16,12 @@ _OPENING = {"]": "[", ")": "("}
 
 
 def plain_name(text: str) -> str:
-    """A name in small letters, without blanks and underscores."""
+    """Return a name in small letters, without blanks and underscores."""
     return "".join(text.replace("_", " ").split()).lower()
 
 
 def name_and_unit(text: str) -> tuple[str, str | None]:
-    """The name in a header such as "width [cm]", and what is in the brackets at its end; None without brackets."""
+    """Return the name in a header such as "width [cm]", and the text in the brackets at its end, None without."""
     text = " ".join(text.split())
     opening = _OPENING.get(text[-1:])
     start = text.rfind(opening) if opening else -1
@@ -36,12 +36,12 @@ def is_empty(cell: Cell) -> bool:
 
 
 def text_of_cell(cell: Cell) -> str:
-    """The text of a cell; a number of a workbook has 15 digits and a point."""
+    """Return the text of a cell; a number of a workbook has 15 digits and a point."""
     return cell if isinstance(cell, str) else f"{cell:.15g}"
 
 
 def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> float | str:
-    """The value of a cell in SI units, or one of the words of the quantity.
+    """Return the value of a cell in SI units, or one of the words of the quantity.
 
     Parameters
     ----------
@@ -64,22 +64,22 @@ def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> float 
         return text
     plain = text.replace(".", "?").replace(",", ".") if isinstance(cell, str) and decimal == "," else text
     parts = split_quantity(plain)
-    written = text[len(text) - len(parts[1]) :] if parts else text
-    stated = unit_name(written, quantity.unit) if written else unit
-    if parts is None or stated is None or written[:1].isdigit():
+    suffix = text[len(text) - len(parts[1]) :] if parts else text
+    cell_unit = unit_name(suffix, quantity.unit) if suffix else unit
+    if parts is None or cell_unit is None or suffix[:1].isdigit():
         allowed = f"one number with the decimal sign {decimal!r} and no other text but its unit"
-        if "," in written and decimal == ".":
+        if "," in suffix and decimal == ".":
             allowed += "; state `decimal` where the comma is the decimal sign"
-        elif parts is not None and written[:1].isalpha():
+        elif parts is not None and suffix[:1].isalpha():
             allowed = f"a unit: {', '.join(UNITS[quantity.unit])}"
         raise InvalidArgumentError(quantity.name, text[:MAX_LENGTH], allowed)
-    if unit and stated != unit:
+    if unit and cell_unit != unit:
         raise InvalidArgumentError(quantity.name, text, f"the unit of its header, {unit}")
-    if not stated and quantity.unit in USUAL:
+    if not cell_unit and quantity.unit in USUAL:
         units = ", ".join(f"[{name}]" for name in UNITS[quantity.unit])
         allowed = f"a unit: one of {units} behind {quantity.name} in the header, or a unit in each cell"
         raise InvalidArgumentError(quantity.name, text, allowed)
     try:
-        return quantity.number(parts[0] * UNITS[quantity.unit].get(stated, 1.0))
+        return quantity.number(parts[0] * UNITS[quantity.unit].get(cell_unit, 1.0))
     except InvalidArgumentError as error:
         raise InvalidArgumentError(quantity.name, text, error.allowed) from None

@@ -7,6 +7,7 @@ from dataclasses import fields
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 class EqualByValue:
@@ -20,25 +21,27 @@ class EqualByValue:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return all(
-            equal_values(getattr(self, one.name), getattr(other, one.name))
-            for one in fields(self)  # type: ignore[arg-type]
-            if one.compare
-        )
-
-
-def equal_values(one: Any, other: Any) -> bool:
-    """Whether two values are equal; arrays by their values, nan being equal to nan."""
-    if one is other:
+        for field in fields(self):  # type: ignore[arg-type]
+            if field.compare and not equal_values(getattr(self, field.name), getattr(other, field.name)):
+                return False
         return True
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        one, other = np.asarray(one), np.asarray(other)
-        if one.dtype.names and one.dtype == other.dtype:
-            return all(equal_values(one[name], other[name]) for name in one.dtype.names)
-        floats = one.dtype.kind in "fc" and other.dtype.kind in "fc"
-        return np.array_equal(one, other, equal_nan=floats)
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return one.keys() == other.keys() and all(equal_values(one[key], other[key]) for key in one)
-    if isinstance(one, list | tuple) and type(one) is type(other):
-        return len(one) == len(other) and all(map(equal_values, one, other))
-    return bool(one == other or (one != one and other != other))
+
+
+def equal_values(value: Any, other: Any) -> bool:
+    """Return True if two values are equal; arrays by their values, nan being equal to nan."""
+    if value is other:
+        return True
+    if isinstance(value, np.ndarray) or isinstance(other, np.ndarray):
+        return _equal_arrays(np.asarray(value), np.asarray(other))
+    if isinstance(value, Mapping) and isinstance(other, Mapping):
+        return value.keys() == other.keys() and all(equal_values(value[key], other[key]) for key in value)
+    if isinstance(value, list | tuple) and type(value) is type(other):
+        return len(value) == len(other) and all(map(equal_values, value, other))
+    return bool(value == other or (value != value and other != other))
+
+
+def _equal_arrays(array: NDArray[Any], other: NDArray[Any]) -> bool:
+    if array.dtype.names and array.dtype == other.dtype:
+        return all(_equal_arrays(array[name], other[name]) for name in array.dtype.names)
+    floats = array.dtype.kind in "fc" and other.dtype.kind in "fc"
+    return np.array_equal(array, other, equal_nan=floats)

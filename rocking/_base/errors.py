@@ -51,7 +51,7 @@ class InvalidArgumentError(RockingError, ValueError):
     allowed : str
         Accepted values, in words or as an interval.
     index : tuple of int
-        Place of the value in an argument with several.
+        Position of the value in an argument with several.
     """
 
     def __init__(self, parameter: str, value: Any, allowed: str, index: tuple[int, ...] = ()) -> None:
@@ -59,8 +59,10 @@ class InvalidArgumentError(RockingError, ValueError):
         self.value = value
         self.allowed = allowed
         self.index = index
-        place = f" at index {index if len(index) > 1 else index[0]}" if index else ""
-        super().__init__(f"`{parameter}` = {_short(value)}{place} is not allowed; allowed: {allowed}")
+        position = ""
+        if index:
+            position = f" at index {index if len(index) > 1 else index[0]}"
+        super().__init__(f"`{parameter}` = {_short(value)}{position} is not allowed; allowed: {allowed}")
 
     def __reduce__(self) -> tuple[type[InvalidArgumentError], tuple[Any, ...]]:
         return type(self), (self.parameter, self.value, self.allowed, self.index)
@@ -120,9 +122,11 @@ class OutsideCubeError(InvalidArgumentError, LookupError):
 
 
 def _short(value: Any) -> str:
-    """A value as text; of a long one, such as an array, its beginning."""
+    """Return a value as text; of a long one, such as an array, its beginning."""
     text = repr(value)
-    return text if len(text) <= MAX_TEXT else f"{' '.join(text[: MAX_TEXT // 2].split())} ... ({type(value).__name__})"
+    if len(text) <= MAX_TEXT:
+        return text
+    return f"{' '.join(text[: MAX_TEXT // 2].split())} ... ({type(value).__name__})"
 
 
 def in_range(
@@ -138,10 +142,12 @@ def in_range(
             if _has_unit(value):  # then degrees were not meant
                 raise InvalidArgumentError(parameter, float(array), _interval(low, high, closed, unit))
             reject_range(parameter, float(array), low, high, closed, unit)
-    elif not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
-        places = np.ndenumerate(array)
-        index, wrong = next((place, entry) for place, entry in places if not _within(float(entry), low, high, closed))
-        reject_range(parameter, float(wrong), low, high, closed, unit, index)
+        return array
+    if _within(float(array.min()), low, high, closed) and _within(float(array.max()), low, high, closed):
+        return array
+    for index, entry in np.ndenumerate(array):
+        if not _within(float(entry), low, high, closed):
+            reject_range(parameter, float(entry), low, high, closed, unit, index)
     return array
 
 
@@ -163,24 +169,25 @@ def positive(parameter: str, value: ArrayLike | WithUnit, unit: str) -> float:
 
 def integer(parameter: str, value: ArrayLike | WithUnit, low: float, high: float) -> int:
     """Return `value` as an int after checking that it is one whole number from `low` to `high`."""
-    found = number(parameter, value, low, high)
-    if not found.is_integer():
+    real = number(parameter, value, low, high)
+    if not real.is_integer():
         raise InvalidArgumentError(parameter, value, f"a whole number in {_interval(low, high, 'both', '-')}")
-    return int(found)
+    return int(real)
 
 
 def si_value(parameter: str, text: str, unit: str) -> float:
-    """The value of a text with a number and a unit, such as "30cm", "4 m/s^2", "0.4 g", "20 deg" or "45 %".
+    """Read a text with a number and a unit, such as "30cm", "4 m/s^2", "0.4 g", "20 deg" or "45 %".
 
     `unit` is a key of `rocking._base.units.UNITS`. Without a unit it raises `MissingUnitError`, which proposes one.
     """
-    percentage = "a number, or a percentage such as '45 %'"
-    allowed = percentage if unit == "-" else f"a number with its unit, such as {EXAMPLES[unit]}"
-    value, written = split_quantity(text) or (math.nan, "")
-    if not written and math.isfinite(value) and unit in USUAL:
+    allowed = "a number, or a percentage such as '45 %'"
+    if unit != "-":
+        allowed = f"a number with its unit, such as {EXAMPLES[unit]}"
+    value, suffix = split_quantity(text) or (math.nan, "")
+    if not suffix and math.isfinite(value) and unit in USUAL:
         proposed = " or ".join(f"{text.strip()}{usual}" for usual in USUAL[unit])
         raise MissingUnitError(parameter, text, f"missing unit: write {proposed} (such as {EXAMPLES[unit]})")
-    name = unit_name(written, unit)
+    name = unit_name(suffix, unit)
     value = value * UNITS[unit][name] if name else math.nan
     if not math.isfinite(value):
         raise InvalidArgumentError(parameter, text, allowed)
@@ -188,7 +195,7 @@ def si_value(parameter: str, text: str, unit: str) -> float:
 
 
 def plain_number(parameter: str, text: str) -> float:
-    """The value of a text without a unit, such as "0.45", "1e-3" or "45 %"."""
+    """Read a text without a unit, such as "0.45", "1e-3" or "45 %"."""
     try:
         return float(text)
     except ValueError:
@@ -196,15 +203,15 @@ def plain_number(parameter: str, text: str) -> float:
 
 
 def plain_numbers(parameter: str, text: str) -> list[float]:
-    """The values of a text of numbers that are separated by commas."""
+    """Read a text of numbers that are separated by commas."""
     try:
-        return [float(one) for one in text.split(",")]
+        return [float(part) for part in text.split(",")]
     except ValueError:
         raise InvalidArgumentError(parameter, text, "a number, or several separated by commas") from None
 
 
 def finite(value: float) -> float | None:
-    """The number; None, which JSON can hold, if it is not finite."""
+    """Return the number, or None, which JSON can hold, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
@@ -220,16 +227,17 @@ def float_array(
     """Return `value` as a float64 array that may hold nan and infinity; the range is only for the message."""
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value
-    given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
-    if not _is_real(given):
+    plain = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
+    if not _is_real(plain):
         allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"
         raise InvalidArgumentError(parameter, value, allowed)
     try:
-        return np.asarray(given, dtype=np.float64)
+        return np.asarray(plain, dtype=np.float64)
     except (TypeError, ValueError):
         reject_range(parameter, value, low, high, closed, unit)
     except OverflowError:  # an integer beyond the range of doubles
-        wrong = next(entry for entry in np.asarray(given, dtype=object).flat if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
+        entries = np.asarray(plain, dtype=object).flat
+        wrong = next(entry for entry in entries if not -_MAX_FLOAT <= entry <= _MAX_FLOAT)
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
 
 
@@ -237,7 +245,7 @@ _PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}  # types without 
 
 
 def _without_unit(parameter: str, value: Any, unit: str) -> Any:
-    """The value of a quantity of any library or a text, or of a list with some, in `unit`; other values as they are."""
+    """Convert a quantity of any library or a text, or a list with some, to `unit`; return other values as they are."""
     if isinstance(value, str) and unit in UNITS:
         return si_value(parameter, value, unit)
     if isinstance(value, str) and not any(unit in names for names in UNITS.values()):
@@ -266,14 +274,14 @@ def _without_unit(parameter: str, value: Any, unit: str) -> Any:
 
 
 def _has_unit(value: Any) -> bool:
-    """Whether a value is a quantity of a library, or a text with a unit."""
+    """Return True for a quantity of a library, or a text with a unit."""
     if isinstance(value, str):
         return bool((split_quantity(value) or (math.nan, ""))[1])
     return hasattr(value, "to") and (hasattr(value, "units") or hasattr(value, "unit"))
 
 
 def _is_real(value: ArrayLike) -> bool:
-    """Whether all entries are real numbers; booleans are not."""
+    """Return True if all entries are real numbers; booleans are not."""
     if type(value) in (float, int):
         return True
     if np.ma.is_masked(value):
@@ -310,20 +318,20 @@ def _interval(low: float, high: float, closed: str, unit: str) -> str:
 
 
 def broadcast(
-    given: Mapping[str, ArrayLike | WithUnit | None], checked: Sequence[NDArray[np.float64]]
+    arguments: Mapping[str, ArrayLike | WithUnit | None], checked: Sequence[NDArray[np.float64]]
 ) -> list[NDArray[np.float64]]:
-    """The `checked` arrays of arguments, broadcast against each other; `given`: the arguments by name, for messages.
+    """Broadcast the `checked` arrays of arguments against each other; `arguments`: these by name, for messages.
 
     Labelled arguments (xarray, pandas) have to agree in dimensions, their order and their indexes: numpy would combine
     entries by position.
     """
-    pairs = zip(given.items(), checked, strict=False)  # an argument that is None may be left out at the end
+    pairs = zip(arguments.items(), checked, strict=False)  # an argument that is None may be left out at the end
     labelled = {name: _labels(value) for (name, value), array in pairs if array.ndim}
     first: list[tuple[Hashable, Any]] = []
     for labels in labelled.values():
         first = first or labels
         if labels and not _same_labels(labels, first):
-            dims = tuple(tuple(dim for dim, _ in one) for one in labelled.values())
+            dims = tuple(tuple(dict(axes)) for axes in labelled.values())
             raise InvalidArgumentError(
                 ", ".join(labelled), dims, "equal dimensions and indexes: use xarray.broadcast or align first"
             )
@@ -331,24 +339,28 @@ def broadcast(
         shape = np.broadcast_shapes(*(array.shape for array in checked))
     except ValueError:
         shapes = tuple(array.shape for array in checked)
-        raise InvalidArgumentError(", ".join(given), shapes, "shapes that broadcast against each other") from None
+        raise InvalidArgumentError(", ".join(arguments), shapes, "shapes that broadcast against each other") from None
     # copies, because kernels need contiguous arrays
     return [array if array.shape == shape else np.array(np.broadcast_to(array, shape)) for array in checked]
 
 
 def _labels(value: Any) -> list[tuple[Hashable, Any]]:
-    """Dimensions of an xarray or pandas object, each with its index or None; empty for other objects."""
+    """Return the dimensions of an xarray or pandas object, each with its index or None; empty for other objects."""
     if hasattr(value, "dims"):
         indexes = getattr(value, "indexes", {})
         return [(dim, indexes.get(dim)) for dim in value.dims]
     return list(enumerate(getattr(value, "axes", ())))
 
 
-def _same_labels(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable, Any]]) -> bool:
-    return len(labels) == len(others) and all(
-        dim == other and (index is None or one is None or index.equals(one))
-        for (dim, index), (other, one) in zip(labels, others, strict=True)
-    )
+def _same_labels(labels: list[tuple[Hashable, Any]], other_labels: list[tuple[Hashable, Any]]) -> bool:
+    if len(labels) != len(other_labels):
+        return False
+    for (dim, index), (other_dim, other_index) in zip(labels, other_labels, strict=True):
+        if dim != other_dim:
+            return False
+        if index is not None and other_index is not None and not index.equals(other_index):
+            return False
+    return True
 
 
 def needed(kind: str, **argument: Any) -> Any:
@@ -411,18 +423,20 @@ class RecordFileError(InvalidArgumentError):
         self.args = (self.message(_as_argument, f'read_{self.parameter}("{self.file}", ', ", ", ")"),)
 
     def message(self, spell: Callable[[str, Any], str], before: str, between: str, after: str = "") -> str:
-        """The message, with arguments as an interface spells them.
+        """Return the message, with arguments as an interface spells them.
 
         `spell` writes a name and its value, None without one; a call is written between `before` and `after`.
         """
-        text = str(self.value).replace("`", "'")
-        shown = text if len(text) <= MAX_FOUND else f"{text[:MAX_FOUND]}..."
-        place = self.file if self.line is None else f"{self.file}, line {self.line}"
-        parts = f"{place.replace('`', chr(39))}: found {shown}; expected {self.expected}".split("`")
+        value = str(self.value)
+        if len(value) > MAX_FOUND:
+            value = f"{value[:MAX_FOUND]}..."
+        position = self.file if self.line is None else f"{self.file}, line {self.line}"
+        text = f"{position}: found {value}".replace("`", "'")
+        parts = f"{text}; expected {self.expected}".split("`")
         for k, part in enumerate(parts):
             if k % 2:
-                name, equals, value = part.partition("=")
-                parts[k] = spell(name, ast.literal_eval(value) if equals else None)
+                name, equals, literal = part.partition("=")
+                parts[k] = spell(name, ast.literal_eval(literal) if equals else None)
         lines = ["".join(parts), *(f"  {line}" for line in self.lines)]
         if self.call is not None:
             arguments = between.join(spell(name, value) for name, value in self.call.items())
@@ -447,7 +461,7 @@ class TableFileError(RecordFileError):
 
 
 def _as_argument(name: str, value: Any) -> str:
-    """An argument of Python: its name in backticks, or with a value."""
+    """Return an argument of Python: its name in backticks, or with a value."""
     if value is None:
         return f"`{name}`"
     return f"{name}=..." if value is ... else f"{name}={value!r}"

@@ -31,7 +31,7 @@ MAX_LABEL = 25  # characters of a label that xarray writes in one line, with a u
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity that people state or that is computed.
+    """A quantity that users state or that is computed.
 
     Attributes
     ----------
@@ -68,13 +68,13 @@ class Quantity:
     words: tuple[str, ...] = ()
 
     def convert(self, value: Values) -> NDArray[np.float64]:
-        """The value in the SI unit as a float64 array, shape kept; checked as `rocking._base.errors` says."""
+        """Convert a value to the SI unit, a float64 array, shape kept; checked as `rocking._base.errors` says."""
         from rocking._base.errors import in_range  # noqa: PLC0415
 
         return in_range(self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
 
     def number(self, value: Values, name: str = "") -> float:
-        """As `convert`, for one number; `name`: in the error message, where it is another."""
+        """Convert one number, as `convert`; `name`: in the error message, where it is another."""
         if type(value) is float and self.lower < value < self.upper:  # all that is left to do for most
             return value
         from rocking._base.errors import number  # noqa: PLC0415
@@ -82,7 +82,7 @@ class Quantity:
         return number(name or self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
 
     def read(self, value: Any, *, si: bool = False) -> Any:
-        """What an option, a cell of JSON or a parameter of a query says: one of the words, a text, or a number.
+        """Read an option, a cell of JSON or a parameter of a query: one of the words, a text, or a number.
 
         `value` is a text such as "40 cm" or "momentum", or a number in the SI unit. `si`: whether a text without a unit
         is in the SI unit, as in a query; otherwise it needs one. Raises `InvalidArgumentError` as `convert`.
@@ -116,13 +116,16 @@ class Quantity:
         """The range as keywords of JSON schema."""
         lower = "minimum" if self.closed in ("both", "left") else "exclusiveMinimum"
         upper = "maximum" if self.closed in ("both", "right") else "exclusiveMaximum"
-        return {name: end for name, end in ((lower, self.lower), (upper, self.upper)) if math.isfinite(end)}
+        ends = {lower: self.lower, upper: self.upper}
+        return {name: end for name, end in ends.items() if math.isfinite(end)}
 
     @property
     def named(self) -> str:
         """The meaning, with the symbol after its first clause."""
-        clause, semicolon, rest = self.meaning.partition(";")
-        return f"{clause}{', ' if self.symbol else ''}{self.symbol}{semicolon}{rest}"
+        if not self.symbol:
+            return self.meaning
+        clause, semicolon, remark = self.meaning.partition(";")
+        return f"{clause}, {self.symbol}{semicolon}{remark}"
 
     @property
     def help(self) -> str:
@@ -159,13 +162,13 @@ class Quantity:
         return "--" + self.name.replace("_", "-")
 
     def restricted(self, lower: float, upper: float) -> Quantity:
-        """The same on a smaller range, closed at its finite ends; `ValueError` if that is no part of its own."""
+        """Return the quantity on a part of its range, closed at finite ends; `ValueError` for any other range."""
         if not self.lower <= lower < upper <= self.upper:
             raise ValueError(f"[{lower:g}, {upper:g}] is not a part of {self.interval}, the range of {self.name}")
         return replace(self, lower=lower, upper=upper, closed="both" if math.isfinite(upper) else "left")
 
     def in_degrees(self) -> Quantity:
-        """The same angle in degrees, with the ending `_deg` of its name."""
+        """Return the angle in degrees, with the ending `_deg` of its name."""
         lower, upper = math.degrees(self.lower), math.degrees(self.upper)
         return replace(self, name=f"{self.name}_deg", unit="deg", lower=lower, upper=upper)
 
@@ -195,57 +198,62 @@ class Kind(Generic[Made]):
     @cached_property
     def hints(self) -> Mapping[str, Any]:
         """The annotations of its parameters by name: a type with its quantity."""
-        hints = {name: one.annotation for name, one in inspect.signature(self.make).parameters.items()}
-        known = self.make.__globals__
-        return {name: eval(hint, known) if isinstance(hint, str) else hint for name, hint in hints.items()}
+        hints = {}
+        for name, parameter in inspect.signature(self.make).parameters.items():
+            hint = parameter.annotation
+            hints[name] = eval(hint, self.make.__globals__) if isinstance(hint, str) else hint
+        return hints
 
     @cached_property
     def fields(self) -> Mapping[str, Quantity]:
         """Its parameters by name, with the defaults of the signature."""
-        found = {}
-        for name, one in inspect.signature(self.make).parameters.items():
-            default = None if one.default is inspect.Parameter.empty else one.default
-            found[name] = replace(self.hints[name].__metadata__[0], name=name, default=default)
-        return found
+        fields = {}
+        for name, parameter in inspect.signature(self.make).parameters.items():
+            default = None if parameter.default is inspect.Parameter.empty else parameter.default
+            fields[name] = replace(self.hints[name].__metadata__[0], name=name, default=default)
+        return fields
 
     @cached_property
     def needed(self) -> frozenset[str]:
         """The parameters without a default."""
         parameters = inspect.signature(self.make).parameters.items()
-        return frozenset(name for name, one in parameters if one.default is inspect.Parameter.empty)
+        return frozenset(name for name, parameter in parameters if parameter.default is inspect.Parameter.empty)
 
-    def read(self, given: Mapping[str, Any], *, numbers: bool = False) -> dict[str, Any]:
-        """The parameters in SI units, `numbers` or arrays; texts have their units, labelled arrays stay as they are.
+    def read(self, arguments: Mapping[str, Any], *, numbers: bool = False) -> dict[str, Any]:
+        """Convert parameters to SI units, `numbers` or arrays; texts have units, labelled arrays stay as they are.
 
         Raises `InvalidArgumentError` if one is missing, unknown or out of range.
         """
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 
-        for name, value in given.items():
+        for name, value in arguments.items():
             if name not in self.fields:
-                raise InvalidArgumentError(
-                    name, value, f"for {self.name}: {' and '.join(self.fields) or 'no parameters'}"
-                )
+                allowed = " and ".join(self.fields) or "no parameters"
+                raise InvalidArgumentError(name, value, f"for {self.name}: {allowed}")
         for name in self.fields:
-            if name in self.needed and given.get(name) is None:
+            if name in self.needed and arguments.get(name) is None:
                 raise InvalidArgumentError(name, None, f"required for {self.name}({', '.join(self.fields)})")
         read = Quantity.read if numbers else _read
-        return {name: read(self.fields[name], value) for name, value in given.items() if numbers or value is not None}
+        values = {}
+        for name, value in arguments.items():
+            if numbers or value is not None:
+                values[name] = read(self.fields[name], value)
+        return values
 
-    def __call__(self, /, **given: Any) -> Made:
-        """Make one from what `read` reads; an error has the value that was given."""
+    def __call__(self, /, **arguments: Any) -> Made:
+        """Make an object from what `read` reads; an error has the argument as it was stated."""
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 
         try:
-            return self.make(**self.read(given))
+            return self.make(**self.read(arguments))
         except InvalidArgumentError as error:
-            if not isinstance(given.get(error.parameter), str) or isinstance(error.value, str):
+            if not isinstance(arguments.get(error.parameter), str) or isinstance(error.value, str):
                 raise
-            raise InvalidArgumentError(error.parameter, given[error.parameter], error.allowed) from None
+            raise InvalidArgumentError(error.parameter, arguments[error.parameter], error.allowed) from None
 
 
 def _read(quantity: Quantity, value: Any) -> Any:
-    """The value of a parameter."""
+    """Convert the value of a parameter."""
     if not quantity.unit or hasattr(value, "dims"):
         return value
     return quantity.read(value) if isinstance(value, str | Real) else quantity.convert(value)
@@ -253,26 +261,27 @@ def _read(quantity: Quantity, value: Any) -> Any:
 
 @lru_cache(maxsize=256)
 def split_kind(text: str, argument: str) -> tuple[str, str, Mapping[str, str]] | None:
-    """The sign, the name and the parameters in a text; None if it has another form.
+    """Return the sign, the name and the parameters in a text; None if it has another form.
 
     Raises `InvalidArgumentError` if a parameter is stated twice, or without a name.
     """
     from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 
-    found = _TEXT.fullmatch(text)
-    if found is None:
+    match = _TEXT.fullmatch(text)
+    if match is None:
         return None
     parameters: dict[str, str] = {}
-    for part in filter(str.strip, (found[3] or "").split(",")):
-        key, equals, value = (one.strip() for one in part.partition("="))
+    for part in filter(str.strip, (match[3] or "").split(",")):
+        key, equals, value = map(str.strip, part.partition("="))
         if not equals or key in parameters:
             raise InvalidArgumentError(argument, text, "each parameter once, as name=value")
         parameters[key] = value
-    return found[1], found[2], parameters
+    return match[1], match[2], parameters
 
 
-def kind_with(kinds: Mapping[str, Kind[Made]], given: Mapping[str, Any]) -> Kind[Made] | None:
-    """The first kind that has all parameters that are given, one that needs no others if there is one."""
-    named = {name for name, value in given.items() if value is not None}
-    known = [one for one in kinds.values() if named and named <= one.fields.keys()]
-    return next((one for one in known if one.needed <= named), next(iter(known), None))
+def kind_with(kinds: Mapping[str, Kind[Made]], arguments: Mapping[str, Any]) -> Kind[Made] | None:
+    """Return the first kind that has all stated parameters, preferably one that needs no others; None without one."""
+    names = {name for name, value in arguments.items() if value is not None}
+    candidates = [kind for kind in kinds.values() if names and names <= kind.fields.keys()]
+    complete = [kind for kind in candidates if kind.needed <= names]
+    return next(iter(complete + candidates), None)

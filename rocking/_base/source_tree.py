@@ -31,11 +31,11 @@ class SourceTree:
         self._imported: dict[Path, list[Path]] = {}
 
     def package(self) -> list[Path]:
-        """All files of the package, sorted."""
-        return sorted(_package(self.root))
+        """Return all files of the package, sorted."""
+        return sorted((self.root / "rocking").rglob("*.py"))
 
     def files(self, *paths: Path) -> list[Path]:
-        """All files of `packages` that the given files import, directly or indirectly, and these files; sorted.
+        """Return these files and all files of `packages` that they import, directly or indirectly; sorted.
 
         A package with an `__init__.pyi` loads its names lazily. Importing a module through it does not add a dependency
         on every public name; importing a name that is not a module does, and then all its files are included.
@@ -50,13 +50,15 @@ class SourceTree:
         return sorted(seen)
 
     def digest(self, *paths: Path) -> str:
-        """sha256 (hex) of the `files` of `paths`, none: of the whole package, and of `environment.lock` if there."""
+        """Return the sha256 (hex) of `files(*paths)`, by default of the package, and of `environment.lock` if there."""
         files = self.files(*(paths or self.package()))
         lock = self.root / "environment.lock"
-        return self.digest_of([*files, *([lock] if lock.exists() else [])])
+        if lock.exists():
+            files.append(lock)
+        return self.digest_of(files)
 
     def digest_of(self, files: Iterable[Path]) -> str:
-        """sha256 (hex) of the names below `root` and the contents of these files alone."""
+        """Return the sha256 (hex) of the names below `root` and the contents of these files alone."""
         digest = hashlib.sha256()
         for path in files:
             content = self.content(path)
@@ -65,27 +67,29 @@ class SourceTree:
         return digest.hexdigest()
 
     def content(self, path: Path) -> bytes:
-        """What a file holds."""
+        """Return the bytes of a file."""
         if path not in self._contents:
             self._contents[path] = path.read_bytes()
         return self._contents[path]
 
     def syntax(self, path: Path) -> ast.Module:
-        """The syntax tree of a file."""
+        """Return the syntax tree of a file."""
         if path not in self._syntax:
             self._syntax[path] = ast.parse(self.content(path))
         return self._syntax[path]
 
     def _imports(self, path: Path) -> list[Path]:
         if path not in self._imported:
-            names = _absolute_names(path.relative_to(self.root), self.syntax(path))
-            followed = [one for one in names if self._packages is None or one[0].partition(".")[0] in self._packages]
-            self._imported[path] = sorted({file for one in followed for file in _module_files(*one, self.root)})
+            files: set[Path] = set()
+            for name, attribute_of in _absolute_names(path.relative_to(self.root), self.syntax(path)):
+                if self._packages is None or name.partition(".")[0] in self._packages:
+                    files.update(_module_files(name, attribute_of, self.root))
+            self._imported[path] = sorted(files)
         return self._imported[path]
 
 
 def imported_names(syntax: ast.Module) -> Iterable[tuple[str, str | None, int]]:
-    """The names that a module imports, with the module of which each may be an attribute, and the relative level."""
+    """Yield the names that a module imports, the module of which each may be an attribute, and the relative level."""
     waiting: list[ast.AST] = [syntax]
     while waiting:
         node = waiting.pop()
@@ -99,12 +103,8 @@ def imported_names(syntax: ast.Module) -> Iterable[tuple[str, str | None, int]]:
             waiting += getattr(node, block, ())
 
 
-def _package(root: Path) -> Iterable[Path]:
-    return (root / "rocking").rglob("*.py")
-
-
 def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]:
-    """What a file at `path` below the root imports: dotted names, with the module of which each may be an attribute."""
+    """Yield the dotted names that a file at `path` imports, and the module of which each may be an attribute."""
     for name, base, level in imported_names(syntax):
         if base is None:
             yield name, ""
@@ -115,12 +115,12 @@ def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]
 
 
 def _module_files(name: str, attribute_of: str, root: Path) -> Iterable[Path]:
-    """Files of a dotted name; if it is not a module, the files of the module that has it as an attribute."""
-    place = root.joinpath(*name.split("."))
-    module = place.with_suffix(".py") if place.name else place
-    initial = place / "__init__.py"
-    if (place / "__init__.pyi").is_file():
-        yield from place.rglob("*.py")
+    """Yield the files of a dotted name; if it is not a module, the files of the module that has it as an attribute."""
+    base = root.joinpath(*name.split("."))
+    module = base.with_suffix(".py") if base.name else base
+    initial = base / "__init__.py"
+    if (base / "__init__.pyi").is_file():
+        yield from base.rglob("*.py")
     elif module.is_file():
         yield module
     elif initial.is_file():

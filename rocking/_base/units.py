@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from itertools import chain
 from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
@@ -21,7 +20,7 @@ class WithUnit(Protocol):
     """A number with a unit, or several, as the library pint has them."""
 
     def to(self, unit: Any, /) -> Any:
-        """The same in another unit."""
+        """Convert to another unit."""
 
 
 Scalar = float | str | WithUnit
@@ -121,7 +120,7 @@ _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?", re.ASCII | r
 
 
 def _forms(name: str) -> tuple[str, ...]:
-    """The ways to write a unit, as `_plain` leaves them."""
+    """Return the ways to write a unit, as `_plain` leaves them."""
     if " " in name:
         return (name.replace(" ", ""),)
     length, _, time = name.partition("/")
@@ -136,33 +135,40 @@ _SIGNS = str.maketrans("¹²⁻−", "12--")  # signs of powers, and the minus s
 
 
 def _plain(text: str) -> str:
-    """A unit in lower case without what may be left out, a full stop included; second is s."""
+    """Return a unit in lower case without what may be left out, a full stop included; second is s."""
     plain = re.sub(r"\*\*|\*(?=\s*s-)|[\s_^()\[\]·⋅]", "", text.lower().translate(_SIGNS))
     return re.sub(r"sec(?:ond)?s?", "s", plain).rstrip(".")
 
 
-_NAMES = {unit: {form.lower(): name for name in names for form in _forms(name)} for unit, names in UNITS.items()}
+def _names(unit: str) -> dict[str, str]:
+    """Return the names of the units of a quantity by the ways to write them."""
+    names: dict[str, str] = {}
+    for name in UNITS[unit]:
+        names |= dict.fromkeys(map(str.lower, _forms(name)), name)
+    return names
+
+
+_NAMES = {unit: _names(unit) for unit in UNITS}
 _NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "g")
 
 
 def unit_name(text: str, unit: str) -> str | None:
-    """The name in `UNITS` of a unit such as "M/S^2"; None if it is none of the quantity with the SI unit `unit`."""
+    """Return the name in `UNITS` of a unit such as "M/S^2"; None if the quantity with the SI unit `unit` lacks it."""
     return _NAMES[unit].get(_plain(text)) if len(text) <= MAX_LENGTH else None
 
 
 def quantities_of(text: str) -> frozenset[str]:
-    """The SI units of the quantities that have a unit such as "M/S^2"."""
-    return _QUANTITIES.get(_plain(text), frozenset()) if len(text) <= MAX_LENGTH else frozenset()
-
-
-_QUANTITIES = {
-    form: frozenset(unit for unit, names in _NAMES.items() if form in names)
-    for form in {*chain.from_iterable(_NAMES.values())}
-}
+    """Return the SI units of the quantities that have a unit such as "M/S^2"."""
+    if len(text) > MAX_LENGTH:
+        return frozenset()
+    form = _plain(text)
+    return frozenset(unit for unit, names in _NAMES.items() if form in names)
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:
-    """The number that a text starts with, and what follows; None if it starts with none, or is too long."""
+    """Return the number that a text starts with, and what follows; None if it starts with none, or is too long."""
     text = text.strip()
-    found = _NUMBER.match(text) if len(text) <= MAX_LENGTH else None
-    return (float(found[0]), text[found.end() :].strip()) if found else None
+    match = _NUMBER.match(text) if len(text) <= MAX_LENGTH else None
+    if match is None:
+        return None
+    return float(match[0]), text[match.end() :].strip()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -60,22 +60,21 @@ class Thresholds(EqualByValue):
     impacts: NDArray[np.int32]
 
     def __repr__(self) -> str:
-        """The changes of outcome in words."""
-        changes = [
-            f"{'overturns' if above else 'survives'} above a = {value:.6g}"
-            for value, above in zip(self.amplitude.tolist(), self.overturns_above.tolist(), strict=True)
-        ]
+        """Return the changes of outcome in words."""
+        changes = []
+        for amplitude, above in zip(self.amplitude.tolist(), self.overturns_above.tolist(), strict=True):
+            changes.append(f"{'overturns' if above else 'survives'} above a = {amplitude:.6g}")
         return f"<rocking.Thresholds: {', '.join(changes) or 'no amplitude was found that overturns the block'}>"
 
     def to_pandas(self) -> pd.DataFrame:
-        """One row for each threshold, with the name of the outcome."""
+        """Return a row for each threshold, with the name of the outcome."""
         import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
 
-        columns = {one.name: getattr(self, one.name) for one in fields(self)}
-        return pd.DataFrame(columns | {"outcome": [Outcome(code).name for code in self.outcome.tolist()]})
+        names = [Outcome(code).name for code in self.outcome.tolist()]
+        return pd.DataFrame(vars(self) | {"outcome": names})
 
     def to_xarray(self) -> xr.Dataset:
-        """The same over the dimension `threshold`."""
+        """Return the thresholds over the dimension `threshold`."""
         import xarray as xr  # noqa: PLC0415
 
         above = "whether the block overturns just above it"
@@ -83,7 +82,8 @@ class Thresholds(EqualByValue):
             {
                 "amplitude": variable("threshold", self.amplitude, "1", "amplitude a = a_g/(g tan alpha)"),
                 "overturns_above": variable("threshold", self.overturns_above, "1", above),
-                **{one.name: one.variable("threshold", getattr(self, one.name)) for one in (OUTCOME, IMPACTS)},
+                "outcome": OUTCOME.variable("threshold", self.outcome),
+                "impacts": IMPACTS.variable("threshold", self.impacts),
             }
         )
 
@@ -103,7 +103,7 @@ def thresholds(
     resolution: Scalar = SCAN_RESOLUTION,
     stop: StopFlag | None = None,
 ) -> Thresholds:
-    """Every amplitude between uplift and `highest` at which the outcome changes.
+    """Search every amplitude between uplift and `highest` at which the outcome changes.
 
     Parameters
     ----------
@@ -143,8 +143,8 @@ def thresholds(
     restraint = one_restraint(stiffness, prestress, damping)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
-        given = needed("a record", frequency_parameter=frequency_parameter)
-        p = number("frequency_parameter", given, *motion.frequency_parameters, unit="rad/s")
+        parameter = needed("a record", frequency_parameter=frequency_parameter)
+        p = number("frequency_parameter", parameter, *motion.frequency_parameters, unit="rad/s")
         groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha), "restraint": restraint}
         return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
@@ -153,8 +153,8 @@ def thresholds(
     if top <= level:  # no uplift
         return Thresholds(np.empty(0), np.empty(0, np.bool_), np.empty(0, np.int8), np.empty(0, np.int32))
     solver = block_solver(motion, stop=stop, restraint=restraint)
-    found = amplitude_changes(solver, omega, eta, top / level, check_one_alpha(alpha))
-    return replace(found, amplitude=found.amplitude * level)
+    changes = amplitude_changes(solver, omega, eta, top / level, check_one_alpha(alpha))
+    return replace(changes, amplitude=changes.amplitude * level)
 
 
 def _record_changes(
@@ -165,6 +165,7 @@ def _record_changes(
     resolution: float,
     stop: StopFlag | None,
 ) -> Thresholds:
+    """Search `thresholds` under a record."""
     factor = check_one_vertical_scale(record, vertical_scale) if vertical_scale is not None else 1.0
     level = 1.0 + float(groups["restraint"].get("prestress", 0.0))
     lowest, limit = level, math.inf
@@ -179,22 +180,20 @@ def _record_changes(
         return record_cells(record, slenderness=1.0 / amplitudes, vertical_scale=factor * amplitudes, **groups)
 
     lines = Lines(motion_samples(record), cells, stop=stop)
-    found, above = outcome_changes(lines, lowest, max(highest, lowest), limit, resolution=resolution)
-    vertical = None if record.vertical is None else factor * found
-    there = record_response(record, slenderness=1.0 / found, vertical_scale=vertical, **groups, stop=stop)
-    return Thresholds(found, above, there.outcome, there.impacts)
+    amplitude, above = outcome_changes(lines, lowest, max(highest, lowest), limit, resolution=resolution)
+    vertical = None if record.vertical is None else factor * amplitude
+    response = record_response(record, slenderness=1.0 / amplitude, vertical_scale=vertical, **groups, stop=stop)
+    return Thresholds(amplitude, above, response.outcome, response.impacts)
 
 
 def one_restraint(stiffness: Scalar, prestress: Scalar, damping: Scalar) -> dict[str, Floats]:
-    """`check_restraint` for numbers."""
-    numbers = (
-        quantity.number(value) for quantity, value in zip(RESTRAINTS, (stiffness, prestress, damping), strict=True)
-    )
-    return check_restraint(*numbers)
+    """Check a restraint given by numbers, as `check_restraint`."""
+    values = zip(RESTRAINTS, (stiffness, prestress, damping), strict=True)
+    return check_restraint(*[quantity.number(value) for quantity, value in values])
 
 
 def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float, alpha: float = 0.0) -> Thresholds:
-    """`thresholds` under a pulse by any solver, whose amplitude is 1 at uplift."""
+    """Search `thresholds` under a pulse by any solver, whose amplitude is 1 at uplift."""
     lowest, log_omega = 1.0 / highest, float(np.log(omega))
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
     grid, codes = outcomes_along(0, (lowest, log_omega, eta, alpha), nodes, classifier(solve, counted_code))
@@ -202,8 +201,8 @@ def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float, al
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])[::-1]
     above = overturns[edge]  # 1/a falls as the amplitude rises
     overturned = np.where(above, edge, edge + 1)
-    place, met = grid[overturned], codes[overturned]
-    many = met == UNCOUNTED
+    threshold, code = grid[overturned], codes[overturned]
+    many = code == UNCOUNTED
     if many.any():
-        met[many], _ = classifier(solve)(place[many], *np.array([log_omega, eta, alpha]))
-    return Thresholds(1.0 / place, above, *decode_outcomes(met))
+        code[many], _ = classifier(solve)(threshold[many], *np.array([log_omega, eta, alpha]))
+    return Thresholds(1.0 / threshold, above, *decode_outcomes(code))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,30 +21,31 @@ class Chains:
     # slenderness, log_omega: the last point within the region along a line omega = const [-]
     slenderness: Floats
     log_omega: Floats
-    # own, neighbour: region codes of the region and of its neighbour
-    own: Codes
+    # region, neighbour: region codes of the region and of its neighbour
+    region: Codes
     neighbour: Codes
     side: NDArray[np.int64]  # 1 where the region lies at larger 1/a than its neighbour, else 0
     width: Floats  # of the region there along 1/a [-]
 
     def take(self, index: Index) -> Chains:
-        """The points of some indices."""
-        return Chains(*(getattr(self, each.name)[index] for each in fields(self)))
+        """Return the points of some indices."""
+        return Chains(**{name: values[index] for name, values in vars(self).items()})
 
     def insert(self, before: Index, points: Chains) -> Chains:
-        """With further points, each before the one of its index."""
-        return Chains(
-            *(np.insert(getattr(self, each.name), before, getattr(points, each.name)) for each in fields(self))
-        )
+        """Insert points, each before the one of its index."""
+        columns = {}
+        for name, values in vars(self).items():
+            columns[name] = np.insert(values, before, getattr(points, name))
+        return Chains(**columns)
 
     def divide(self, before: Index) -> Chains:
-        """With new chains that begin at some points."""
+        """Begin new chains at some points."""
         starts = np.diff(self.chain, prepend=-1) != 0
         starts[before] = True
         return replace(self, chain=np.cumsum(starts) - 1)
 
     def without_points(self) -> Chains:
-        """Without the chains of one point."""
+        """Remove the chains of one point."""
         chains = self.take(np.flatnonzero(np.bincount(self.chain)[self.chain] > 1))
         return chains.divide(np.empty(0, dtype=np.intp))
 
@@ -54,17 +55,17 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
 
     Regions that lie on a single line are left out.
     """
-    # a point is an end of a region in a whole column: parts of one column have it in common
+    # a point is an end of a region in the column of a line: parts of one column have it in common
     number: dict[tuple[int, int, int], int] = {}
     points: list[tuple[float, float, int, int, int, float]] = []
     beside: list[list[int]] = []
     for join in joins:
         ends = []
         for column, m, side in join:
-            key = id(column.whole), column.offset + m, side
+            key = id(column.parent), column.offset + m, side
             if key not in number:
                 number[key] = len(points)
-                points.append(_point(column.whole, column.offset + m, side))
+                points.append(_point(column.parent, column.offset + m, side))
                 beside.append([])
             ends.append(number[key])
         beside[ends[0]].append(ends[1])
@@ -74,18 +75,19 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
     sizes: list[int] = []
     seen = [False] * len(points)
     # open chains begin at a point with one join; what is left after them is closed
-    for start in [*(k for k, near in enumerate(beside) if len(near) == 1), *range(len(points))]:
+    open_ends = [k for k, adjacent in enumerate(beside) if len(adjacent) == 1]
+    for start in [*open_ends, *range(len(points))]:
         if seen[start]:
             continue
-        chain, here = [start], start
+        chain, current = [start], start
         seen[start] = True
         while True:
-            further = [k for k in beside[here] if not seen[k]]
-            if not further:
+            unseen = [k for k in beside[current] if not seen[k]]
+            if not unseen:
                 break
-            here = further[0]
-            seen[here] = True
-            chain.append(here)
+            current = unseen[0]
+            seen[current] = True
+            chain.append(current)
         if len(beside[start]) == 2:
             chain.append(start)
         if len({points[k][1] for k in chain}) == 1:
@@ -97,7 +99,7 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
         chain=np.repeat(np.arange(len(sizes)), sizes),
         slenderness=table[0],
         log_omega=table[1],
-        own=table[2].astype(np.int64),
+        region=table[2].astype(np.int64),
         neighbour=table[3].astype(np.int64),
         side=table[4].astype(np.int64),
         width=table[5],

@@ -8,8 +8,8 @@ from rocking._boundary.columns import THINNEST, Index
 from rocking._boundary.search import ELASTIC_RESOLUTION, RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
-"""Where a region is looked for at the middle of a chord: near it, then further away, as shares of the distance at
-which it may lie [-]."""
+"""Points at which a region is looked for at the middle of a chord, as shares of the distance at which it may lie: near
+it, then further away [-]."""
 
 WIDENINGS = 4  # times that the bracket of a curve is widened [-]
 
@@ -51,87 +51,90 @@ def refine_chords(
         if not first.size:
             break
         many = _uncounted(chains, first)
-        most = np.where(many, uncounted, largest)
-        middle, found, distance = _middles(chains, first, bend, most, classify, block)
-        wrong = ~found & many
-        unknown += int(np.sum(~found & ~wrong))
+        allowed = np.where(many, uncounted, largest)
+        middle, on_curve, distance = _middles(chains, first, bend, allowed, classify, block)
+        wrong = ~on_curve & many
+        unknown += int(np.sum(~on_curve & ~wrong))
         chains = chains.divide(first[wrong] + 1)
         middle.chain = chains.chain[first]
-        close = ~found | (distance <= most)
-        error = distance[found & close & ~many].max(initial=error)
-        uncounted_error = distance[found & close & many].max(initial=uncounted_error)
+        close = ~on_curve | (distance <= allowed)
+        error = distance[on_curve & close & ~many].max(initial=error)
+        uncounted_error = distance[on_curve & close & many].max(initial=uncounted_error)
         # the point of the curve becomes a vertex, and both halves are looked at in the next round
         cut = first[~close]
         chains = chains.insert(cut + 1, middle.take(np.flatnonzero(~close)))
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
-        place = cut + np.arange(cut.size)
-        todo[place] = todo[place + 1] = True
+        index = cut + np.arange(cut.size)
+        todo[index] = todo[index + 1] = True
     return chains.without_points(), float(error), float(uncounted_error), unknown
 
 
 def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
-    """Whether chords bound a region of many impacts."""
-    return np.asarray(chains.own[first] == UNCOUNTED)
+    """Return True for chords that bound a region of many impacts."""
+    return np.asarray(chains.region[first] == UNCOUNTED)
 
 
 def _middles(
     chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify, block: tuple[Floats, Floats]
 ) -> tuple[Chains, NDArray[np.bool_], Floats]:
-    """Points of the curves halfway along some chords, whether they were found, and their distance from the chords.
+    """Search the curves halfway along some chords: points, True where found, and their distance from the chords.
 
     Where the distance is not larger than `largest`, it is a bound, and the point is not refined.
     """
-    one, two = chains.take(first), chains.take(first + 1)
-    y = 0.5 * (one.log_omega + two.log_omega)
-    chord = 0.5 * (one.slenderness + two.slenderness)
+    start, stop = chains.take(first), chains.take(first + 1)
+    y = 0.5 * (start.log_omega + stop.log_omega)
+    chord = 0.5 * (start.slenderness + stop.slenderness)
     guess = chord + bend
-    outward = np.where(one.side == 1, -1.0, 1.0)
-    width = np.minimum(one.width, two.width)
-    nearest = np.where((block[0] == 1.0) & (one.own == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
+    outward = np.where(start.side == 1, -1.0, 1.0)
+    width = np.minimum(start.width, stop.width)
+    nearest = np.where((block[0] == 1.0) & (start.region == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
     # a bracket around the predicted place, one end inside the region and one outside, widened until it holds the curve
     near = np.clip(0.3 * np.abs(bend), nearest, np.maximum(0.4 * width, nearest))
-    ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
-    found = np.zeros(y.size, dtype=bool)
+    ends, margins, neighbour = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
+    on_curve = np.zeros(y.size, dtype=bool)
     for _ in range(WIDENINGS):
-        lost = np.flatnonzero(~found)
-        if not lost.size:
+        missing = np.flatnonzero(~on_curve)
+        if not missing.size:
             break
-        reach = (outward * near)[lost, None] * [-1.0, 1.0]
-        ends[lost] = guess[lost, None] + reach
-        codes, margins[lost] = classify(ends[lost], y[lost, None], *block)
-        met[lost] = codes[:, 1]
-        found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
+        reach = (outward * near)[missing, None] * [-1.0, 1.0]
+        ends[missing] = guess[missing, None] + reach
+        codes, margins[missing] = classify(ends[missing], y[missing, None], *block)
+        neighbour[missing] = codes[:, 1]
+        on_curve[missing] = (codes[:, 0] == start.region[missing]) & (codes[:, 1] != start.region[missing])
         near = np.minimum(8.0 * near, 0.4 * width)
     # where that fails, rows of points across the region, the second one over three times the distance
     for shares in SCANS:
-        lost = np.flatnonzero(~found)
-        if not lost.size:
+        missing = np.flatnonzero(~on_curve)
+        if not missing.size:
             break
-        reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
-        x = np.clip(guess[lost, None] + (outward[lost] * reach)[:, None] * shares, 1e-6, 1.0)
-        codes, at = classify(x, y[lost, None], *block)
-        k, found[lost] = _nearest_end(codes == one.own[lost, None])
-        rows = np.arange(lost.size)
-        ends[lost], margins[lost] = (np.stack([each[rows, k], each[rows, k + 1]], axis=1) for each in (x, at))
-        met[lost] = codes[rows, k + 1]
-    slope = (two.slenderness - one.slenderness) / (two.log_omega - one.log_omega)
+        reach = np.maximum(1.5 * width[missing], 3.0 * np.abs(bend[missing]))
+        x = np.clip(guess[missing, None] + (outward[missing] * reach)[:, None] * shares, 1e-6, 1.0)
+        codes, margin = classify(x, y[missing, None], *block)
+        k, on_curve[missing] = _nearest_end(codes == start.region[missing, None])
+        rows = np.arange(missing.size)
+        ends[missing] = np.stack([x[rows, k], x[rows, k + 1]], axis=1)
+        margins[missing] = np.stack([margin[rows, k], margin[rows, k + 1]], axis=1)
+        neighbour[missing] = codes[rows, k + 1]
+    slope = (stop.slenderness - start.slenderness) / (stop.log_omega - start.log_omega)
     distance = np.abs(ends - chord[:, None]).max(axis=1) / np.hypot(1.0, slope)
     for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
-        k = np.flatnonzero(found & (distance > largest))
+        k = np.flatnonzero(on_curve & (distance > largest))
         points = np.stack(np.broadcast_arrays(chord[k], y[k], *block), axis=1)
-        refined = refine_brackets(0, points, ends[k], margins[k], one.own[k], met[k], classify, resolution[k])
-        ends[k], margins[k], met[k] = refined.ends, refined.margins, refined.met
+        refined = refine_brackets(
+            0, points, ends[k], margins[k], start.region[k], neighbour[k], classify, resolution[k]
+        )
+        ends[k], margins[k], neighbour[k] = refined.ends, refined.margins, refined.beyond
         distance[k] = np.abs(ends[k] - chord[k, None]).max(axis=1) / np.hypot(1.0, slope[k])
-    other = np.flatnonzero(found & (met != one.neighbour) & (met != two.neighbour))
+    other = np.flatnonzero(on_curve & (neighbour != start.neighbour) & (neighbour != stop.neighbour))
     if other.size:  # another neighbour, unless it is too thin to be resolved
         beyond, _ = classify(ends[other, 0] + THINNEST * outward[other], y[other], *block)
-        met[other] = np.where(beyond == one.own[other], met[other], beyond)
-    middle = Chains(one.chain, ends[:, 0], y, one.own, met, one.side, width)
-    return middle, found, distance
+        neighbour[other] = np.where(beyond == start.region[other], neighbour[other], beyond)
+    middle = Chains(start.chain, ends[:, 0], y, start.region, neighbour, start.side, width)
+    return middle, on_curve, distance
 
 
 def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
-    """Distance of a curve from the middle of a chord, by the chords before and after it, and how much these differ."""
+    """Estimate how far a curve is from the middle of a chord by the chords on both sides, and how much these differ."""
     size = chains.chain.size
     x, y = chains.slenderness, chains.log_omega
     bends = np.full((2, first.size), np.nan)
@@ -139,18 +142,18 @@ def _bend(chains: Chains, first: Index) -> tuple[Floats, Floats]:
         inner = (a >= 0) & (a < size)
         end = np.clip(a, 0, size - 1)
         inner &= (chains.chain[end] == chains.chain[b]) & (chains.side[end] == chains.side[b])
-        before, here = y[b] - y[end], y[c] - y[b]
-        inner &= before * here > 0.0
-        before = np.where(inner, before, 1.0)
-        curvature = 2.0 * ((x[c] - x[b]) / here - (x[b] - x[end]) / before) / (here + before)
-        bends[row] = np.where(inner, -0.125 * curvature * here * here, np.nan)
-    known = np.isfinite(bends)
-    bend = np.where(known, bends, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    return bend, np.where(known.all(axis=0), np.abs(bends[0] - bends[1]), np.inf)
+        length_before, length = y[b] - y[end], y[c] - y[b]
+        inner &= length_before * length > 0.0
+        length_before = np.where(inner, length_before, 1.0)
+        curvature = 2.0 * ((x[c] - x[b]) / length - (x[b] - x[end]) / length_before) / (length + length_before)
+        bends[row] = np.where(inner, -0.125 * curvature * length * length, np.nan)
+    is_known = np.isfinite(bends)
+    bend = np.where(is_known, bends, 0.0).sum(axis=0) / np.maximum(is_known.sum(axis=0), 1)
+    return bend, np.where(is_known.all(axis=0), np.abs(bends[0] - bends[1]), np.inf)
 
 
 def _nearest_end(within: NDArray[np.bool_]) -> tuple[Index, NDArray[np.bool_]]:
-    """The last point within a region nearest to the middle one of some points in a row, and whether there is one."""
+    """Return the last point within a region nearest to the middle of a row of points, and whether there is one."""
     leaves = within[:, :-1] & ~within[:, 1:]
     distance = np.abs(np.arange(leaves.shape[1]) - leaves.shape[1] // 2)
     return np.argmin(np.where(leaves, distance, np.inf), axis=1), np.asarray(leaves.any(axis=1))

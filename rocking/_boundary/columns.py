@@ -34,27 +34,27 @@ class Column:
     # (2, thresholds, 4) how the boundary curve goes that ends at each threshold, see `rocking._boundary.matching`:
     # known from the left (row 0) and from the right (row 1); nan where unknown
     trends: Floats = field(init=False)
-    # whole, offset: the column that this one is a part of, and the index of its first threshold there
-    whole: Column = field(init=False)
+    # parent, offset: the column that this one is a part of, and the index of its first threshold there
+    parent: Column = field(init=False)
     offset: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
         self.regions = np.array(self.codes, dtype=np.int64)
         self.trends = np.full((2, self.below.size, 4), np.nan)
-        self.whole = self
+        self.parent = self
         self.middle = 0.5 * (self.below + self.above)
 
     def code_at(self, x: Floats) -> Codes:
-        """Region code at points between the two ends."""
+        """Return the region code at points between the two ends."""
         return self.regions[np.searchsorted(self.middle, x)]
 
     def least_width(self, inner: Index) -> Floats:
-        """Widths in 1/a below which the regions above some thresholds are not resolved [-]."""
-        below, own, above = (self.regions[inner + k] == UNCOUNTED for k in range(3))
-        return np.where(own | (below & above), self.thinnest, THINNEST)
+        """Return the widths in 1/a below which the regions above some thresholds are not resolved [-]."""
+        below, inside, above = self.regions[inner + np.arange(3)[:, None]] == UNCOUNTED
+        return np.where(inside | (below & above), self.thinnest, THINNEST)
 
     def between(self, first: int, last: int) -> Column:
-        """The thresholds from `first` to before `last`, and the regions beside them."""
+        """Return the part from the threshold `first` to before `last`, with the regions beside them."""
         bottom = self.above[first - 1] if first else self.bottom
         top = self.below[last] if last < self.below.size else self.top
         cut = slice(first, last)
@@ -68,7 +68,7 @@ class Column:
             self.thinnest,
         )
         part.trends = self.trends[:, cut]
-        part.whole, part.offset = self.whole, self.offset + first
+        part.parent, part.offset = self.parent, self.offset + first
         return part
 
 
@@ -99,7 +99,7 @@ class Lines:
         return dict(zip(touched, self._columns(nodes.line, nodes.x, nodes.codes), strict=True))
 
     def _columns(self, line: Index, x: Floats, codes: Codes) -> list[Column]:
-        """A column for each line of some nodes, without the regions that are too thin."""
+        """Build a column for each line of some nodes, without the regions that are too thin."""
         codes = without_layers(codes)
         start, end = _runs(line, codes)
         line, codes, low, high = line[start], codes[start], x[start], x[end]
@@ -110,33 +110,34 @@ class Lines:
             thinnest[coarse] = self.thinnest[line[coarse]]
             # the first and the last run of a line reach the ends of the window: they stay, however thin
             edge = np.diff(line) != 0
-            kept = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
-            line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]
+            resolved = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
+            line, codes, low, high = line[resolved], codes[resolved], low[resolved], high[resolved]
             start, end = _runs(line, codes)
             line, codes, low, high = line[start], codes[start], low[start], high[end]
         first = np.flatnonzero(np.append(True, np.diff(line) != 0))
-        return [
-            Column(
-                float(self.points[line[a], 1]),
-                high[a : b - 1],
-                low[a + 1 : b],
-                codes[a:b].tolist(),
-                float(low[a]),
-                float(high[b - 1]),
-                float(self.thinnest[line[a]]),
+        columns = []
+        for a, b in zip(first, np.append(first[1:], line.size), strict=True):
+            column = Column(
+                log_omega=float(self.points[line[a], 1]),
+                below=high[a : b - 1],
+                above=low[a + 1 : b],
+                codes=codes[a:b].tolist(),
+                bottom=float(low[a]),
+                top=float(high[b - 1]),
+                thinnest=float(self.thinnest[line[a]]),
             )
-            for a, b in zip(first, np.append(first[1:], line.size), strict=True)
-        ]
+            columns.append(column)
+        return columns
 
 
 def _between(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether both neighbours of an entry are set."""
-    found = np.zeros(flags.size, dtype=bool)
-    found[1:-1] = flags[:-2] & flags[2:]
-    return found
+    """Return True for the entries whose two neighbours are set."""
+    between = np.zeros(flags.size, dtype=bool)
+    between[1:-1] = flags[:-2] & flags[2:]
+    return between
 
 
 def _runs(line: Index, codes: Codes) -> tuple[Index, Index]:
-    """First and last index of each run of one outcome on one line."""
+    """Return the first and last index of each run of one outcome on one line."""
     edge = (np.diff(line) != 0) | (np.diff(codes) != 0)
     return np.flatnonzero(np.append(True, edge)), np.flatnonzero(np.append(edge, True))

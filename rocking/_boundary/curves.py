@@ -20,20 +20,20 @@ ALPHA_TOLERANCE = 1e-12
 
 
 def join_curves(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """The curves of all parts in turn: ragged polylines with equal variables over `curve` or `point`."""
-    curves, points = ([part.drop_dims(other) for part in parts] for other in ("point", "curve"))
+    """Join the curves of all parts in turn: ragged polylines with equal variables over `curve` or `point`."""
+    curves, points = [part.drop_dims("point") for part in parts], [part.drop_dims("curve") for part in parts]
     return xr.merge([xr.concat(curves, dim="curve"), xr.concat(points, dim="point")])
 
 
 def curves_at(curves: xr.Dataset, alpha: float) -> xr.Dataset:
-    """The curves of one slenderness angle [rad], [0, pi/2), 0 for the slender limit; of size 0 if there are none."""
-    wanted = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
-    points = np.repeat(wanted, curves["row_size"].values)
-    return curves.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points))
+    """Select the curves of one slenderness angle [rad], [0, pi/2), 0 for the slender limit; there may be none."""
+    selected = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
+    points = np.repeat(selected, curves["row_size"].values)
+    return curves.isel(curve=np.flatnonzero(selected), point=np.flatnonzero(points))
 
 
 def points_of(curves: xr.Dataset) -> dict[str, list[Any]]:
-    """The points of curves as columns, with the number, outcome and impacts of their curve."""
+    """Return the points of curves as columns, with the number, outcome and impacts of their curve."""
     sizes = curves["row_size"].values
     columns = {
         "curve": np.repeat(np.arange(sizes.size), sizes),
@@ -50,7 +50,7 @@ STEP = 0.2  # distance of points on a curve, in cells [-]
 
 
 def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Array) -> NDArray[np.bool_]:
-    """Cells (n - 1, m - 1) of a spectrum grid that an overturning boundary crosses, or just misses.
+    """Return the cells (n - 1, m - 1) of a spectrum grid that an overturning boundary crosses, or just misses.
 
     `boundary`: ragged curves as of `overturning_boundary`, with alpha(curve) [rad]; `alpha`: the angle [rad], 0 for the
     slender limit; `rows` (n,), `columns` (m,): slenderness and frequency_ratio.
@@ -78,6 +78,6 @@ def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Arra
 
 
 def _index(axis: Array, value: Array) -> Array:
-    """Fractional index on an axis, carried on beyond its ends as the outermost cells go."""
+    """Return the fractional index on an axis, carried on beyond its ends as the outermost cells go."""
     cell = np.clip(np.searchsorted(axis, value, side="right") - 1, 0, axis.size - 2)
     return cell + (value - axis[cell]) / (axis[cell + 1] - axis[cell])

@@ -42,7 +42,7 @@ def critical_frequency_ratio(
     alpha: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> FrequencyThresholds:
-    """Every frequency ratio at which the outcome changes, the amplitude being fixed.
+    """Search every frequency ratio at which the outcome changes, the amplitude being fixed.
 
     Arguments and errors are those of `peak_response`. `window`: smallest and largest omega considered [-],
     1e-9 <= low < high <= 1e9, at most four decades apart.
@@ -52,14 +52,14 @@ def critical_frequency_ratio(
     missed; a surviving band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are
     one, is not, unless it is narrower than `RESOLUTION`.
     """
-    made = as_pulse(pulse)
+    shape = as_pulse(pulse)
     low, high = check_ends(FREQUENCY_RATIO, window, "window")
     if not high <= 1e4 * low:
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
     point = SLENDERNESS.number(slenderness), float(nodes[0]), RESTITUTION.number(restitution), check_one_alpha(alpha)
-    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, stop=stop), counted_code))
+    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(shape, stop=stop), counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])
     above = overturns[edge + 1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -81,9 +81,7 @@ class SavingRestraint(EqualByValue):
 
     def in_units(self, factor: float, unit: str) -> SavingRestraint:
         """Return the same with values times `factor`, in another unit."""
-        value, highest = self.value * factor, self.highest * factor
-        others = self.survives_above, self.survives_without
-        return SavingRestraint(self.name, unit, value, *others, highest, self.resolution)
+        return replace(self, unit=unit, value=self.value * factor, highest=self.highest * factor)
 
     def __repr__(self) -> str:
         """The restraint in words."""

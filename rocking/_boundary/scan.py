@@ -96,7 +96,7 @@ _PARTS = 16
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Bodies under samples, each a line of strengths.
+    """Bodies under samples, a line of strengths for each body.
 
     Attributes
     ----------
@@ -119,12 +119,12 @@ class Lines:
     stop: StopFlag | None = None
 
     def overturned(self, line: Index, strength: Array) -> Bools:
-        """Whether the bodies overturn."""
+        """Return True for the bodies that overturn."""
         records, _ = solve_bodies(self.samples, self.cells(line, strength), self.threads, self.stop, self.each_side)
         return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
 
     def estimated(self, line: Index, strength: Array) -> tuple[Bools, Array]:
-        """Whether they do by an estimate, and the ends of `Intervals` (bodies, 4) by the logarithm of the strength.
+        """Estimate which bodies overturn, and the ends of `Intervals` (bodies, 4) by the logarithm of the strength.
 
         Of bodies with a tendon or a damper by the solver, without a reach: intervals are as wide as the resolution.
         """
@@ -136,7 +136,7 @@ class Lines:
         return estimate_outcomes(self.samples, cells, self.threads, self.stop)
 
     def overturned_where_coarse(self, line: Index, strength: Array) -> Bools:
-        """Whether the bodies overturn for which a sample interval is longer than `LONGEST_INTERVAL`; others do not."""
+        """Return True for the bodies that overturn and have a sample interval longer than `LONGEST_INTERVAL`."""
         cells = self.cells(line, strength)
         coarse = cells["rate"] > LONGEST_INTERVAL
         overturned = np.zeros(line.size, dtype=np.bool_)
@@ -145,7 +145,7 @@ class Lines:
         return overturned
 
     def from_line(self, first: int) -> Lines:
-        """Those from a number on."""
+        """Return the bodies from a number on."""
         return replace(self, cells=lambda line, strength: self.cells(line + first, strength))
 
 
@@ -163,8 +163,8 @@ class Intervals:
     low_end: Array
     high_end: Array
 
-    def wanted(self, multiple: Array) -> Bools:
-        """Whether each is wide beside a reach into it, or its ends disagree; never where the multiple is 0."""
+    def unresolved(self, multiple: Array) -> Bools:
+        """Return True where an interval is wide beside a reach into it, or its ends disagree; False for multiple 0."""
         gap = self.high - self.low
         share = gap / PARTS
         reach = np.minimum(self.low_end[:, 0], self.high_end[:, 1])
@@ -175,18 +175,18 @@ class Intervals:
         return np.asarray(wide | (jumps & (gap > NARROWEST) & (multiple > 0.0)))
 
     def take(self, index: Index | Bools) -> Self:
-        """Some of them."""
-        return type(self)(*(column[index] for column in vars(self).values()))
+        """Return some of the intervals."""
+        return type(self)(*[column[index] for column in vars(self).values()])
 
-    def with_others(self, *others: Self) -> Self:
-        """All of them, in order."""
-        columns = zip(*(vars(one).values() for one in (self, *others)), strict=True)
+    def merged(self, *parts: Self) -> Self:
+        """Return the intervals of all parts, in order."""
+        columns = zip(*[vars(part).values() for part in (self, *parts)], strict=True)
         joined = type(self)(*map(np.concatenate, columns))
         return joined.take(np.lexsort((joined.low, joined.line)))
 
 
 def checked_resolution(resolution: Scalar) -> float:
-    """The resolution of `lowest_overturning` [-].
+    """Check the resolution of `lowest_overturning` [-].
 
     Raises
     ------
@@ -205,7 +205,7 @@ def lowest_overturning(
     resolution: float = RESOLUTION,
     enough: Array | float = 0.0,
 ) -> Array:
-    """Lowest strength at which each body overturns, of those tried; nan where none up to the highest was found.
+    """Search the lowest strength at which each body overturns, of those tried; nan where none up to the highest does.
 
     Parameters
     ----------
@@ -229,82 +229,84 @@ def lowest_overturning(
         A strength that overturns the body; one lower by 1e-6, or the weakest, does not or is the start.
     """
     start, highest, limit, enough = np.broadcast_arrays(start, highest, limit, enough)
-    found = np.full(start.shape, math.nan)
+    lowest = np.full(start.shape, math.nan)
     size = max(FEWEST, math.ceil(start.size / (SHARES * AVAILABLE_CORES)))
     if start.size > size:
         lines = replace(lines, threads=1)
 
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
-        own = lines.from_line(part.start)
-        found[part] = _Search(own, start[part], limit[part], resolution, enough[part]).lowest(highest[part])
+        search = _Search(lines.from_line(part.start), start[part], limit[part], resolution, enough[part])
+        lowest[part] = search.lowest(highest[part])
 
     fill_chunks(fill, start.size, size, AVAILABLE_CORES, lines.stop)
-    return np.where(found > highest, math.nan, found)
+    return np.where(lowest > highest, math.nan, lowest)
 
 
 class _Search:
-    """One search for the lowest strengths of bodies; places number the strengths that can be tried, from the start."""
+    """Search for the lowest strengths of bodies; steps number the strengths that can be tried, from the start."""
 
     def __init__(self, lines: Lines, start: Array, limit: Array, resolution: float, enough: Array) -> None:
         self.lines, self.start, self.limit = lines, start, limit
         self.unit, self.budget = math.log1p(resolution) / PARTS, BUDGET * min(RESOLUTION / resolution, 1.0)
         with np.errstate(divide="ignore"):
-            self.enough = np.log(enough / start) / self.unit  # place
-        self.first = np.full(start.size, math.inf)  # place of the lowest that overturns, by an estimate or confirmed
-        self.known = self.first.copy()  # place of the lowest that is confirmed
-        self.hits = np.empty((2, 0), dtype=np.intp)  # lines and places that overturn by an estimate
+            self.enough = np.log(enough / start) / self.unit  # step
+        self.first = np.full(start.size, math.inf)  # step of the lowest that overturns, by an estimate or confirmed
+        self.confirmed = self.first.copy()  # step of the lowest that is confirmed
+        self.hits = np.empty((2, 0), dtype=np.intp)  # lines and steps that overturn by an estimate
         self.tried = np.zeros(start.size)  # responses in the window
 
-    def strength(self, line: Index, place: Index | Array) -> Array:
-        """The strength at a place."""
-        return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * place), self.limit[line]))
+    def strength(self, line: Index, step: Index | Array) -> Array:
+        """Return the strength at a step."""
+        return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * step), self.limit[line]))
 
-    def ends(self, line: Index, place: Index, *, solved: bool = False) -> Array:
-        """The ends of `Intervals`, by parts; `solved`: not by an estimate alone where samples are coarse."""
-        strength = self.strength(line, place)
+    def ends(self, line: Index, step: Index, *, solved: bool = False) -> Array:
+        """Return the ends of `Intervals`, by parts; `solved`: not by an estimate alone where samples are coarse."""
+        strength = self.strength(line, step)
         overturned, ends = self.lines.estimated(line, strength)
         if solved:
             overturned |= self.lines.overturned_where_coarse(line, strength)
         self.tried += np.bincount(line, minlength=self.tried.size)
-        hits = np.stack([line, place])[:, overturned]
+        hits = np.stack([line, step])[:, overturned]
         self.hits = np.concatenate([self.hits, hits], axis=1)
         np.minimum.at(self.first, *hits)
         return np.where(overturned[:, None], 0.0, ends * [1.0 / self.unit, 1.0 / self.unit, 1.0, self.unit])
 
     def confirm(self) -> None:
         """Confirm the lowest that overturn by an estimate; where the solver does not, the next ones."""
-        while (left := np.flatnonzero(self.first < self.known)).size:
+        while (left := np.flatnonzero(self.first < self.confirmed)).size:
             for shift in SHIFTS:
-                at = np.maximum(self.first[left] + shift, 0.0)
-                confirmed = self.lines.overturned(left, self.strength(left, at))
-                own = left[confirmed]
-                self.known[own] = np.minimum(self.known[own], at[confirmed])
-                left = left[~confirmed]
+                step = np.maximum(self.first[left] + shift, 0.0)
+                overturned = self.lines.overturned(left, self.strength(left, step))
+                line = left[overturned]
+                self.confirmed[line] = np.minimum(self.confirmed[line], step[overturned])
+                left = left[~overturned]
                 if not left.size:
                     break
-            line, place = self.hits
-            self.hits = self.hits[:, place > self.first[line] + SHIFTS[-1]]
-            self.first = self.known.copy()
+            line, step = self.hits
+            self.hits = self.hits[:, step > self.first[line] + SHIFTS[-1]]
+            self.first = self.confirmed.copy()
             np.minimum.at(self.first, *self.hits)
 
     def settled(self) -> Bools:
-        """Whether a strength is known that is low enough."""
+        """Return True for lines with a strength that is low enough."""
         return np.asarray(self.first <= self.enough)
 
     def lowest(self, highest: Array) -> Array:
-        """The lowest strength of each body, nan where none up to the highest or a little above it was found."""
+        """Search the lowest strength of each body, nan where none up to the highest or a little above it is found."""
         with np.errstate(divide="ignore"):
-            end, last = (np.log(each / self.start) / self.unit for each in (highest, self.limit))
+            end = np.log(highest / self.start) / self.unit
+            last = np.log(self.limit / self.start) / self.unit
         last = np.ceil(np.minimum(last, end + 2 * WINDOW * PARTS)).astype(np.intp)  # of the limit, where it is near
         lines, solved_to, intervals = np.flatnonzero(highest >= self.start), 0, None
         while lines.size:
-            line, place = np.broadcast_arrays(lines[:, None], solved_to + PARTS * np.arange(WINDOW + 1))
-            place = np.minimum(place, last[line])
+            line, step = np.broadcast_arrays(lines[:, None], solved_to + PARTS * np.arange(WINDOW + 1))
+            step = np.minimum(step, last[line])
             self.tried[:] = 0.0
-            ends = self.ends(line.ravel(), place.ravel(), solved=True).reshape((*place.shape, 4))
-            places = (column.ravel() for column in (line[:, 1:], place[:, :-1], place[:, 1:]))
-            window = Intervals(*places, *(each.reshape(-1, 4) for each in (ends[:, :-1], ends[:, 1:])))
-            intervals = window if intervals is None else intervals.with_others(window)
+            ends = self.ends(line.ravel(), step.ravel(), solved=True).reshape((*step.shape, 4))
+            low, high = step[:, :-1].ravel(), step[:, 1:].ravel()
+            low_end, high_end = ends[:, :-1].reshape(-1, 4), ends[:, 1:].reshape(-1, 4)
+            window = Intervals(line[:, 1:].ravel(), low, high, low_end, high_end)
+            intervals = window if intervals is None else intervals.merged(window)
             for multiple in MULTIPLES:
                 intervals = self.refined(intervals, multiple)
             before = np.zeros(0)
@@ -322,7 +324,7 @@ class _Search:
         return self.bisected(np.flatnonzero(np.isfinite(self.first)))
 
     def refined(self, intervals: Intervals, multiple: float) -> Intervals:
-        """The intervals, and those into which they are divided as long as one is to be halved."""
+        """Halve intervals until none is unresolved."""
         done: list[Intervals] = []
         while True:
             gap = intervals.high - intervals.low
@@ -330,45 +332,39 @@ class _Search:
             below = self.first[intervals.line] - intervals.low
             close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
             searched = (below > 0.0) & ~self.settled()[intervals.line]
-            halved = (gap > 1) & (intervals.wanted(used) | close) & searched
+            halved = (gap > 1) & (intervals.unresolved(used) | close) & searched
             if not halved.any():
-                return intervals.with_others(*done) if done else intervals
+                return intervals.merged(*done) if done else intervals
             done.append(intervals.take(~halved))
-            whole = intervals.take(halved)
-            middle = (whole.low + whole.high) // 2
-            ends = self.ends(whole.line, middle)
-            pairs = (
-                (whole.low, middle),
-                (middle, whole.high),
-                (whole.low_end, ends),
-                (ends, whole.high_end),
-            )
-            halves = (np.stack(pair, axis=1).reshape(-1, *pair[0].shape[1:]) for pair in pairs)
-            intervals = Intervals(np.repeat(whole.line, 2), *halves)
+            wide = intervals.take(halved)
+            middle = (wide.low + wide.high) // 2
+            end = self.ends(wide.line, middle)
+            lower = replace(wide, high=middle, high_end=end)
+            intervals = lower.merged(replace(wide, low=middle, low_end=end))
 
-    def bisected(self, known: Index) -> Array:
-        """The lowest strengths of bodies for which one is known, with the change of outcome below it."""
-        place = self.known[known]
-        low = np.where(np.isfinite(self.enough[known]), place, np.maximum(place - 1.0, 0.0))
-        found = np.full(self.start.size, math.nan)
-        over, step = np.ones(known.size, dtype=np.bool_), 1.0
-        while (down := np.flatnonzero(over & (low < place))).size:
-            over[down] = self.lines.overturned(known[down], self.strength(known[down], low[down]))
-            down, step = down[over[down]], 2.0 * step
-            place[down] = low[down]
-            low[down] = np.maximum(low[down] - step, 0.0)
-        high, under = (self.strength(known, each) for each in (place, low))
-        while (wide := np.flatnonzero(high / under - 1.0 > RELATIVE_ERROR)).size:
-            middle = np.sqrt(under[wide] * high[wide])
-            overturned = self.lines.overturned(known[wide], middle)
+    def bisected(self, lines: Index) -> Array:
+        """Bisect the change of outcome below the confirmed strength of some lines; return the lowest that overturn."""
+        step = self.confirmed[lines]
+        low = np.where(np.isfinite(self.enough[lines]), step, np.maximum(step - 1.0, 0.0))
+        overturned, distance = np.ones(lines.size, dtype=np.bool_), 1.0
+        while (down := np.flatnonzero(overturned & (low < step))).size:
+            overturned[down] = self.lines.overturned(lines[down], self.strength(lines[down], low[down]))
+            down, distance = down[overturned[down]], 2.0 * distance
+            step[down] = low[down]
+            low[down] = np.maximum(low[down] - distance, 0.0)
+        over, under = self.strength(lines, step), self.strength(lines, low)
+        while (wide := np.flatnonzero(over / under - 1.0 > RELATIVE_ERROR)).size:
+            middle = np.sqrt(under[wide] * over[wide])
+            overturned = self.lines.overturned(lines[wide], middle)
             under[wide] = np.where(overturned, under[wide], middle)
-            high[wide] = np.where(overturned, middle, high[wide])
-        found[known] = high
-        return found
+            over[wide] = np.where(overturned, middle, over[wide])
+        lowest = np.full(self.start.size, math.nan)
+        lowest[lines] = over
+        return lowest
 
 
 def scanned(lowest: float, highest: float) -> Array:
-    """Values from the lowest on at the ratio `SCAN_RATIO`; only the last one depends on the highest."""
+    """Return values from the lowest on at the ratio `SCAN_RATIO`; only the last one depends on the highest."""
     count = max(math.ceil(math.log(highest / lowest) / math.log(SCAN_RATIO)), 0)
     return np.minimum(lowest * SCAN_RATIO ** np.arange(count + 1.0), highest)
 
@@ -381,7 +377,7 @@ def outcome_changes(
     *,
     resolution: float = RESOLUTION,
 ) -> tuple[Array, Bools]:
-    """Every change of outcome of one body, bisected, and whether it overturns above; arrays (changes,).
+    """Search every change of outcome of one body, bisected, and whether it overturns above; arrays (changes,).
 
     The first is that of `lowest_overturning`; above it the values of `scanned` are tried.
     """
@@ -395,14 +391,14 @@ def outcome_changes(
     values = scanned(float(first[0]), highest)
     overturned = np.append(True, overturns(values[1:]))
     edges = np.flatnonzero(overturned[1:] != overturned[:-1])
-    found = [
-        _bisected(overturns, float(values[k]), float(values[k + 1]), bool(overturned[k + 1])) for k in edges.tolist()
-    ]
-    return np.append(first, found), np.append(True, overturned[edges + 1])
+    above = overturned[edges + 1]
+    rows = zip(values[edges].tolist(), values[edges + 1].tolist(), above.tolist(), strict=True)
+    changes = [_bisected(overturns, *row) for row in rows]
+    return np.append(first, changes), np.append(True, above)
 
 
 def _bisected(solve: Callable[[Array], Bools], low: float, high: float, above: bool) -> float:
-    """The end of the interval of a change that overturns, once the interval is narrow; `above` is the upper end."""
+    """Narrow the interval of a change; return the end that overturns, the upper one if `above`."""
     while high / low - 1.0 > RELATIVE_ERROR:
         edges: Array = np.geomspace(low, high, _PARTS + 2).astype(np.float64)
         changed = solve(edges[1:-1]) == above

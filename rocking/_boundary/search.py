@@ -1,4 +1,4 @@
-"""Points where the outcome changes, found with the solver itself: on one line of the control space, or on many.
+"""Search with the solver for points where the outcome changes, on one line of the control space or on many.
 
 A point is 1/a, log omega, the restitution and the slenderness angle, 0 for the slender limit.
 """
@@ -63,7 +63,7 @@ Solve = Callable[[Floats, Floats, Floats, Floats], tuple[NDArray[np.void], Float
 
 
 class Outcomes(Protocol):
-    """What the codes are made from: a `Response`, or records of the solver; arrays of one shape."""
+    """Outcomes of blocks: a `Response`, or records of the solver; arrays of one shape."""
 
     @property
     def outcome(self) -> NDArray[np.int8]:
@@ -75,47 +75,47 @@ class Outcomes(Protocol):
 
     @property
     def chatter(self) -> NDArray[np.bool_]:
-        """Whether impacts were replaced by their sum."""
+        """True where impacts were replaced by their sum."""
 
 
-def layer_code(found: Outcomes) -> Codes:
-    """The code of the outcome, but `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
+def layer_code(outcomes: Outcomes) -> Codes:
+    """Return the code of the outcome, `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
 
     After chatter the count says when the solver replaced the remaining impacts by their sum, not what the block did.
     """
-    codes = outcome_codes(found.outcome, found.impacts)
-    many = found.chatter | (found.impacts > MOST_IMPACTS)
+    codes = outcome_codes(outcomes.outcome, outcomes.impacts)
+    many = outcomes.chatter | (outcomes.impacts > MOST_IMPACTS)
     return np.where((codes != SURVIVES) & many, UNCOUNTED, codes)
 
 
-def region_code(found: Outcomes) -> Codes:
-    """`layer_code`, with the code `UNCOUNTED` for overturning after more than `MANY_IMPACTS` impacts too.
+def region_code(outcomes: Outcomes) -> Codes:
+    """Return `layer_code`, with the code `UNCOUNTED` for overturning after more than `MANY_IMPACTS` impacts too.
 
     After many impacts the regions of one count are layers thinner than any figure shows.
     """
-    return without_layers(layer_code(found))
+    return without_layers(layer_code(outcomes))
 
 
 def without_layers(codes: Codes) -> Codes:
-    """Region codes from layer codes."""
+    """Return region codes from layer codes."""
     return np.where(impacts_of_code(codes) > MANY_IMPACTS, UNCOUNTED, codes)
 
 
-def counted_code(found: Outcomes) -> Codes:
-    """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_codes(found.outcome, found.impacts)
-    return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
+def counted_code(outcomes: Outcomes) -> Codes:
+    """Return the code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
+    codes = outcome_codes(outcomes.outcome, outcomes.impacts)
+    return np.where((codes != SURVIVES) & (outcomes.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
 class Work:
-    """Impacts that the solver has followed, and blocks, for each angle: what the search for curves has cost so far."""
+    """Cost of the search for curves so far: impacts that the solver has followed, and blocks, for each angle."""
 
     def __init__(self, alphas: Sequence[float]) -> None:
         self.alphas = np.unique(alphas)
         self.done = np.zeros(self.alphas.size)
 
     def angle(self, alpha: Floats) -> Index:
-        """Numbers of some of the angles."""
+        """Return the numbers of some of the angles."""
         return np.searchsorted(self.alphas, alpha)
 
     def add(self, impacts: NDArray[np.int32], alpha: Floats) -> None:
@@ -125,7 +125,7 @@ class Work:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What the solver has found for some blocks, see `Outcomes`; arrays of one shape."""
+    """Results of the solver for some blocks, see `Outcomes`; arrays of one shape."""
 
     outcome: NDArray[np.int8]
     impacts: NDArray[np.int32]
@@ -138,7 +138,7 @@ def block_solver(
     stop: StopFlag | None = None,
     restraint: Mapping[str, Floats] = NO_RESTRAINT,
 ) -> Solve:
-    """The solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
+    """Return the solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
 
     `restraint`: of `rocking._model.checks.check_restraint`; the slenderness is then over that of uplift, 1 + sigma.
 
@@ -162,7 +162,7 @@ def block_solver(
 
 
 def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None, work: Work | None = None) -> Classify:
-    """A solver as a `Classify`, which notes its work in `work`; `code_of` tells more outcomes apart."""
+    """Return a solver as a `Classify`, which notes its work in `work`; `code_of` tells more outcomes apart."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats, alpha: Floats) -> tuple[Codes, Floats]:
         # rounding must not lead out of the range
@@ -191,18 +191,18 @@ class Nodes:
     margin: Floats  # its margin to another outcome
 
     def take(self, index: Index | NDArray[np.bool_] | slice) -> Nodes:
-        """The nodes of some indices."""
+        """Return the nodes of some indices."""
         return Nodes(self.line[index], self.x[index], self.codes[index], self.margin[index])
 
     @classmethod
     def joined(cls, parts: Iterable[Nodes]) -> Nodes:
-        """The nodes of one part after the other."""
+        """Return the nodes of one part after the other."""
         columns = [(part.line, part.x, part.codes, part.margin) for part in parts]
         return cls(*map(np.concatenate, zip(*columns, strict=True)))
 
     @classmethod
     def merged(cls, parts: Iterable[Nodes]) -> Nodes:
-        """The nodes of all parts in ascending order of line, then coordinate, each once."""
+        """Return the nodes of all parts in ascending order of line, then coordinate, each once."""
         together = cls.joined(parts)
         nodes = together.take(np.lexsort((together.x, together.line)))
         first = np.ones(nodes.x.size, dtype=bool)
@@ -217,7 +217,7 @@ class Brackets:
     # ends, margins: (points, 2) coordinates of the two ends, and the margins there
     ends: Floats
     margins: Floats
-    met: Codes  # (points,) outcomes at the second end
+    beyond: Codes  # (points,) outcomes at the second end
 
 
 def refine_brackets(
@@ -226,23 +226,23 @@ def refine_brackets(
     ends: Floats,
     margins: Floats,
     code: Codes,
-    met: Codes,
+    beyond: Codes,
     classify: Classify,
     resolution: Floats | float = RESOLUTION,
 ) -> Brackets:
     """Shrink brackets along one axis of the control space to a width of `resolution` [-] at most.
 
     `axis`: 0 for brackets in 1/a, 1 for log omega; `points` (points, 4): 1/a, log omega, eta and alpha, that along the
-    axis does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `met` (points,):
-    outcomes there.
+    axis does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `beyond`
+    (points,): outcomes there, which differ.
 
-    Given: brackets with one outcome at the first end and another at the second. Kept: the outcome at the first end, so
-    that the bracket always holds a change; the second end takes whatever outcome is met. Chandrupatla's method: the
+    The outcome at the first end is kept, so that the bracket always holds a change; the second end takes any other
+    outcome. Chandrupatla's method: the
     outcome alone decides on which side a point lies. The margin in energy, as a rule continuous through the change of
     outcome, only chooses the next point, and makes it a third of the work of bisection. The first point lies halfway:
     there it shows regions between the two ends more often than near one of them.
     """
-    place, ends, margins, met = points.copy(), ends.copy(), margins.copy(), met.copy()
+    current, ends, margins, beyond = points.copy(), ends.copy(), margins.copy(), beyond.copy()
     # a is the newest end of the bracket, b the other one, c the end that a replaced
     active = np.arange(len(code))
     b, a = ends.T.copy()
@@ -252,12 +252,12 @@ def refine_brackets(
     least_width = np.broadcast_to(resolution, len(code))
     while active.size:
         x = a + share * (b - a)
-        place[active, axis] = x
-        here, margin = classify(*place[active].T)
-        within = here == code[active]
+        current[active, axis] = x
+        code_here, margin = classify(*current[active].T)
+        within = code_here == code[active]
         end = np.where(within, 0, 1)
         ends[active, end], margins[active, end] = x, margin
-        met[active[~within]] = here[~within]
+        beyond[active[~within]] = code_here[~within]
         fx = np.where(within, 1.0, -1.0) * _distance(margin)
         # the new point replaces the end on its own side
         same = within == (fa > 0.0)
@@ -266,22 +266,24 @@ def refine_brackets(
         a, fa = x, fx
         width = np.abs(b - a)
         left = width > least_width[active]
-        active, a, b, c, fa, fb, fc, width = [each[left] for each in (active, a, b, c, fa, fb, fc, width)]
+        active, width = active[left], width[left]
+        a, b, c = a[left], b[left], c[left]
+        fa, fb, fc = fa[left], fb[left], fc[left]
         share = _next_share(a, b, c, fa, fb, fc)
         # half the final width from either end: a point nearer to one would hardly shrink the bracket
         least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)
-    return Brackets(ends, margins, met)
+    return Brackets(ends, margins, beyond)
 
 
 def _distance(margin: Floats) -> Floats:
-    """A positive measure of the distance from a change of outcome: the margin, its logarithm where it is large."""
+    """Return a positive measure of the distance from a change of outcome: the margin, or its logarithm if large."""
     distance: Floats = np.log1p(np.abs(margin) / LARGE_MARGIN) + 1e-300
     return distance
 
 
 def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Floats) -> Floats:
-    """Where the next point lies between a and b: by inverse quadratic interpolation if well inside, else halfway."""
+    """Choose the next point between a and b: by inverse quadratic interpolation if well inside, else halfway."""
     with np.errstate(divide="ignore", invalid="ignore"):
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
         inside = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
@@ -297,11 +299,11 @@ def refine_lines(
     thinnest: float = RESOLUTION,
     layers: Floats | float = RESOLUTION,
 ) -> Nodes:
-    """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
+    """Refine every change of outcome between nodes on lines along one axis to two nodes at most `RESOLUTION` apart.
 
-    Given: nodes with their outcomes. Decided: where each run of one outcome ends. Between two nodes that differ there
-    is a change for certain; a region that no node shows is found only if a point of a search meets it. What is met is a
-    node of the next round, so that a region that was seen once is not lost.
+    Between two nodes that differ there
+    is a change for certain; a region that no node shows is found only if a point of a search meets it. Each
+    point of a search is a node of the next round, so that a region that was seen once is not lost.
 
     Where `layers` or `ELASTIC_RESOLUTION` hold, the two nodes may lie so far apart. `axis`, `points` (lines, 4): as for
     `refine_brackets`; `nodes`: on these lines, in ascending order of line, then coordinate; `thinnest`: width below
@@ -317,12 +319,14 @@ def refine_lines(
         return np.where(regions[0] == regions[1], layers[line], many)
 
     def refined(inner: Nodes, outer: Nodes) -> tuple[Nodes, Nodes]:
-        """Where the outcome at the inner nodes ends before the outer ones: the last node within, the first beyond."""
+        """Return the last nodes with the outcomes of the inner ones, and the first beyond, towards the outer ones."""
         resolution = resolution_at(inner.line, inner.codes, outer.codes)
         ends, margins = np.stack([inner.x, outer.x], axis=1), np.stack([inner.margin, outer.margin], axis=1)
-        found = refine_brackets(axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution)
-        (x, beyond), (margin, margin_beyond) = found.ends.T, found.margins.T
-        return Nodes(inner.line, x, inner.codes, margin), Nodes(inner.line, beyond, found.met, margin_beyond)
+        brackets = refine_brackets(
+            axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution
+        )
+        (x, x_beyond), (margin, margin_beyond) = brackets.ends.T, brackets.margins.T
+        return Nodes(inner.line, x, inner.codes, margin), Nodes(inner.line, x_beyond, brackets.beyond, margin_beyond)
 
     for _ in range(ROUNDS):
         change = (np.diff(nodes.codes) != 0) & (np.diff(nodes.line) == 0)
@@ -340,39 +344,37 @@ def refine_lines(
         upper = nodes.take(first + 1)
         inside, outside = refined(nodes.take(first), upper)
         # ... and, where another one than that at the upper end begins there, where that at the upper end begins
-        other = outside.codes != upper.codes
+        differs = outside.codes != upper.codes
         after = np.flatnonzero(edge & narrow & exact[:-2])
-        upper = Nodes.joined([upper.take(other), nodes.take(after + 1)])
-        lower = Nodes.joined([outside.take(other), nodes.take(after)])
+        upper = Nodes.joined([upper.take(differs), nodes.take(after + 1)])
+        lower = Nodes.joined([outside.take(differs), nodes.take(after)])
         last, before = refined(upper, lower)
-        # between the two places another region lies: points near its ends and in its middle show what it holds
+        # between the two points another region lies: points near its ends and in its middle show what it holds
         wide = before.x - lower.x > 2 * thinnest
         on, low, high = before.line[wide], lower.x[wide], before.x[wide]
-        between = [
-            Nodes(on, x, *_classify_at(axis, points[on], x, classify))
-            for x in (low + thinnest, 0.5 * (low + high), high - thinnest)
-        ]
+        probes = low + thinnest, 0.5 * (low + high), high - thinnest
+        between = [Nodes(on, x, *_classify_at(axis, points[on], x, classify)) for x in probes]
         nodes = Nodes.merged([nodes, inside, outside, last, before, *between])
     return nodes
 
 
 def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tuple[Codes, Floats]:
-    """Codes and margins at points whose coordinate along the axis is replaced."""
-    place = points.copy()
-    place[:, axis] = x
-    return classify(*place.T)
+    """Classify points whose coordinate along the axis is replaced."""
+    moved = points.copy()
+    moved[:, axis] = x
+    return classify(*moved.T)
 
 
 def outcomes_along(
     axis: int, point: tuple[float, float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
-    """Nodes on one line of the control space, ascending, and their outcomes, with all changes refined (`refine_lines`).
+    """Classify nodes on one line of the control space and refine all changes; return all nodes, ascending, and codes.
 
     `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega, eta and alpha, of which the coordinate
     along the axis does not count; `nodes`: where outcomes are looked for first, ascending.
     """
-    places = np.tile(point, (nodes.size, 1))
-    places[:, axis] = nodes
-    known = Nodes(np.zeros(nodes.size, dtype=np.intp), nodes, *classify(*places.T))
-    found = refine_lines(axis, np.array([point]), known, classify)
-    return found.x, found.codes
+    start = np.tile(point, (nodes.size, 1))
+    start[:, axis] = nodes
+    classified = Nodes(np.zeros(nodes.size, dtype=np.intp), nodes, *classify(*start.T))
+    refined = refine_lines(axis, np.array([point]), classified, classify)
+    return refined.x, refined.codes

@@ -31,7 +31,8 @@ times the work.
 """
 
 LAYERED = 3.5
-"""The same holds if the nodes of a line show, on average, more ends of regions of many impacts than this [-].
+"""Ends of regions of many impacts that the nodes of a line show on average, above which these are resolved less
+finely, too [-].
 
 Under the pulse c2 surviving bands divide such a region, each with thinner ones beside it, down to the finest scale.
 """
@@ -97,12 +98,12 @@ class Tracer:
         return sum(self._open[k] for k in panels)
 
     def _classify_grid(self, rows: Sequence[Floats]) -> None:
-        """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
+        """Build columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
         self.thinnest, self.end, self.chord = np.empty((3, len(rows)))
         grids, first = [], 0
-        for own in rows:
-            lines = first + np.arange(own.shape[1])
-            grids.append(self._classified_grid(own, lines))
+        for grid in rows:
+            lines = first + np.arange(grid.shape[1])
+            grids.append(self._classified_grid(grid, lines))
             self._resolve_layers(grids[-1], lines)
             first += lines.size
         self.lines = Lines(self.points, self.classify, self.thinnest[self.angle])
@@ -110,41 +111,42 @@ class Tracer:
         self.columns = [columns[k] for k in range(len(self.points))]
 
     def _classified_grid(self, rows: Floats, columns: Index) -> Nodes:
-        """The nodes of one grid, where the outcome changes, with the finer ones."""
-        found = []
+        """Classify the nodes of one grid; return those where the outcome changes, with the finer ones."""
+        parts = []
         for part in np.array_split(columns, math.ceil(rows.size / BATCH_SIZE)):
             x, lines = np.broadcast_arrays(rows.T[part - columns[0]], part[:, None])
             codes, margin = self.classify(x, *self.points[part, 1:, None].swapaxes(0, 1))
             edge = np.diff(codes) != 0
             ends = np.ones((part.size, 1), dtype=bool)
-            kept = np.concatenate([ends, edge], 1) | np.concatenate([edge, ends], 1)
-            found.append(Nodes(lines[kept], x[kept], codes[kept], margin[kept]))
+            ends_of_runs = np.concatenate([ends, edge], 1) | np.concatenate([edge, ends], 1)
+            parts.append(Nodes(lines[ends_of_runs], x[ends_of_runs], codes[ends_of_runs], margin[ends_of_runs]))
             many = (codes == UNCOUNTED) | (impacts_of_code(codes) >= 2)
             inner = many[..., 1:] | many[..., :-1]
             line, low, high = lines[..., 1:][inner], x[..., :-1][inner], x[..., 1:][inner]
             finer = (low + (high - low) * np.arange(1, FINER)[:, None] / FINER).ravel()
             line = np.tile(line, FINER - 1)
-            found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
-        return Nodes.merged(found)
+            parts.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
+        return Nodes.merged(parts)
 
     def _resolve_layers(self, nodes: Nodes, lines: Index) -> None:
         """Choose how finely regions of many impacts are resolved, from how many of their ends the nodes show."""
         many = without_layers(nodes.codes) == UNCOUNTED
         ends = np.count_nonzero((many[1:] != many[:-1]) & (np.diff(nodes.line) == 0))
         coarse = ends > LAYERED * lines.size or self.points[lines[0], 2] > NEARLY_ELASTIC
-        angle, fine = self.angle[lines[0]], (THINNEST, END, CHORD)
-        chosen = (UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD) if coarse else fine
-        self.thinnest[angle], self.end[angle], self.chord[angle] = chosen
+        angle = self.angle[lines[0]]
+        self.thinnest[angle] = UNCOUNTED_THINNEST if coarse else THINNEST
+        self.end[angle] = UNCOUNTED_END if coarse else END
+        self.chord[angle] = UNCOUNTED_CHORD if coarse else CHORD
 
-    def _follow(self, panels: Iterable[int], most: Floats) -> set[int]:
-        """Look in each column for the regions of its neighbours; the panels whose columns changed."""
+    def _follow(self, panels: Iterable[int], limit: Floats) -> set[int]:
+        """Look in each column for the regions of its neighbours; return the panels whose columns changed."""
         changed: set[int] = set()
         todo = set(panels)
-        while todo := {k for k in todo if self._can_go_on(k, most)}:
-            wanted: dict[int, list[Floats]] = defaultdict(list)
+        while todo := {k for k in todo if self._can_go_on(k, limit)}:
+            probes: dict[int, list[Floats]] = defaultdict(list)
             matched = {k: match_thresholds(self.columns[k], self.columns[k + 1]) for k in sorted(todo)}
             # a region without partner in the next column is looked for there, where its slope leads; what is found is a
-            # new node of that column and looked for in the one after it. No place is tried twice, so the loop ends
+            # new node of that column and looked for in the one after it. No point is tried twice, so the loop ends
             for k in [*matched, *reversed(matched)]:  # slopes pass from panel to panel in both directions
                 learn_slopes(self.columns[k], self.columns[k + 1], matched[k])
             for k, pairs in matched.items():
@@ -153,20 +155,21 @@ class Tracer:
                     line = k if column is left else k + 1
                     if (line, k, *key) not in self._tried:
                         self._tried.add((line, k, *key))
-                        wanted[line].append(x)
-            todo = self._look(wanted)
+                        probes[line].append(x)
+            todo = self._look(probes)
             changed |= todo
         return changed
 
-    def _look(self, wanted: dict[int, list[Floats]]) -> set[int]:
-        """Classify points on some lines; the panels beside the lines on which they show something new."""
-        if not wanted:
+    def _look(self, probes: dict[int, list[Floats]]) -> set[int]:
+        """Classify points on some lines; return the panels beside the lines on which they show something new."""
+        if not probes:
             return set()
-        line = np.repeat([*wanted], [sum(x.size for x in xs) for xs in wanted.values()])
-        x = np.concatenate([x for xs in wanted.values() for x in xs])
+        points = {line: np.concatenate(parts) for line, parts in probes.items()}
+        line = np.repeat([*points], [part.size for part in points.values()])
+        x = np.concatenate([*points.values()])
         nodes = Nodes(line, x, *self.classify(x, *self.points[line, 1:].T))
-        known = np.concatenate([self.columns[k].code_at(np.concatenate(xs)) for k, xs in wanted.items()])
-        new = np.isin(line, np.unique(line[without_layers(nodes.codes) != known]))
+        expected = np.concatenate([self.columns[k].code_at(part) for k, part in points.items()])
+        new = np.isin(line, np.unique(line[without_layers(nodes.codes) != expected]))
         if not new.any():
             return set()
         before = {int(k): self.columns[k] for k in np.unique(line[new])}
@@ -177,13 +180,13 @@ class Tracer:
                 panels |= {k - 1, k}
         return panels & set(self.panels)
 
-    def _can_go_on(self, line: int, most: Floats) -> bool:
-        """Whether the work at the angle of a line is below a limit."""
+    def _can_go_on(self, line: int, limit: Floats) -> bool:
+        """Return True if the work at the angle of a line is below a limit."""
         angle = self.angle[line]
-        return bool(self.work.done[angle] < most[angle])
+        return bool(self.work.done[angle] < limit[angle])
 
-    def _join(self, lines: set[int], most: Floats) -> list[Panel]:
-        """Join the regions of neighbouring columns; the panels, or parts of them, in which one ends."""
+    def _join(self, lines: set[int], limit: Floats) -> list[Panel]:
+        """Join the regions of neighbouring columns; return the panels, or parts of them, in which one ends."""
         todo: list[Panel] = []
         for k in sorted(lines):
             self.joins[k], self._open[k] = [], 0
@@ -198,7 +201,7 @@ class Tracer:
                 # only the parts of a panel in which the columns differ are halved; in a part narrower than the end
                 # distance the regions end, and it counts as an open end if the effort ran out before
                 for gap in panel.gaps(pairs):
-                    if gap.step > self._end_distance(gap) and self._can_go_on(gap.line, most):
+                    if gap.step > self._end_distance(gap) and self._can_go_on(gap.line, limit):
                         halved.append(gap)
                     else:
                         self.joins[gap.line] += join_sides(gap.left, gap.right)
@@ -208,41 +211,40 @@ class Tracer:
         return last
 
     def _halve(self, panels: list[Panel]) -> list[Panel]:
-        """A column within each panel, and the two panels that it makes of it."""
+        """Divide each panel by a further column; return the two panels of each."""
         if not panels:
             return []
-        shares = [panel.share(self._end_distance(panel)) for panel in panels]
         points = self.points[[panel.line for panel in panels]]
-        points[:, 1] = [panel.left.log_omega + share * panel.step for panel, share in zip(panels, shares, strict=True)]
-        expected = [panel.expected(share) for panel, share in zip(panels, shares, strict=True)]
-        nodes = [panel.nodes(courses, share) for panel, courses, share in zip(panels, expected, shares, strict=True)]
-        found, codes = self._classified(points, nodes)
+        shares, courses, nodes = [], [], []
+        for k, panel in enumerate(panels):
+            share = panel.share(self._end_distance(panel))
+            points[k, 1] = panel.left.log_omega + share * panel.step
+            shares.append(share)
+            courses.append(panel.expected(share))
+            nodes.append(panel.nodes(courses[k], share))
+        first, codes = self._classified(points, nodes)
         # regions that the first nodes should have met and did not get a second set of nodes, inside their courses
-        more, _ = self._classified(
-            points,
-            [
-                panel.inner(courses.missed(x, met), share)
-                for panel, courses, share, x, met in zip(panels, expected, shares, nodes, codes, strict=True)
-            ],
-        )
+        missed = []
+        for k, panel in enumerate(panels):
+            missed.append(panel.inner(courses[k].missed(nodes[k], codes[k]), shares[k]))
+        second, _ = self._classified(points, missed)
         thinnest = np.array([panel.left.thinnest for panel in panels])
-        made = Lines(points, self.classify_regions, thinnest).add(Nodes.joined([found, more]))
+        columns = Lines(points, self.classify_regions, thinnest).add(Nodes.joined([first, second]))
         halves: list[Panel] = []
-        for i, panel in enumerate(panels):
-            column = panel.bounded(made[i])
+        for k, panel in enumerate(panels):
+            column = panel.bounded(columns[k])
             if column is None:  # the outcomes at the two sides of the panel do not go on to this column
                 self.joins[panel.line] += join_sides(panel.left, panel.right)
                 self._open[panel.line] += 1
-            else:
-                predicted = panel.predicted + (shares[i] != 0.5)
-                halves += [
-                    Panel(panel.line, *columns, predicted) for columns in ((panel.left, column), (column, panel.right))
-                ]
+                continue
+            predicted = panel.predicted + (shares[k] != 0.5)
+            halves.append(Panel(panel.line, panel.left, column, predicted))
+            halves.append(Panel(panel.line, column, panel.right, predicted))
         return halves
 
     def _classified(self, points: Floats, x: list[Floats]) -> tuple[Nodes, list[Codes]]:
-        """Region codes at points of some lines: together, and line by line."""
-        sizes = [each.size for each in x]
+        """Classify points of some lines by region codes: together, and line by line."""
+        sizes = [row.size for row in x]
         line = np.repeat(np.arange(len(x)), sizes)
         together = np.concatenate(x)
         nodes = Nodes(line, together, *self.classify_regions(together, *points[line, 1:].T))
@@ -250,19 +252,19 @@ class Tracer:
         return nodes, [nodes.codes[end - size : end] for size, end in zip(sizes, ends, strict=True)]
 
     def _end_distance(self, panel: Panel) -> float:
-        """Distance in log omega within which the ends of regions in a panel are known [-]."""
+        """Return the distance in log omega within which the ends of regions in a panel are known [-]."""
         return float(self.end[self.angle[panel.line]]) if panel.uncounted else END
 
     def _beyond(self, ends: list[Panel]) -> set[int]:
         """Look for regions that end at a column of the grid beyond it, now that their course is known well."""
         of_column = {id(column): k for k, column in enumerate(self.columns)}
-        wanted: dict[int, list[Floats]] = defaultdict(list)
+        probes: dict[int, list[Floats]] = defaultdict(list)
         for end in ends:
-            if of_column.keys().isdisjoint((id(end.left.whole), id(end.right.whole))):
+            if of_column.keys().isdisjoint((id(end.left.parent), id(end.right.parent))):
                 continue
             pairs = match_thresholds(end.left, end.right)
             for column, x, _ in probes_for_lost_regions(end.left, end.right, pairs):
-                line = of_column.get(id(column.whole))
+                line = of_column.get(id(column.parent))
                 if line is not None:
-                    wanted[line].append(x)
-        return self._look(wanted)
+                    probes[line].append(x)
+        return self._look(probes)

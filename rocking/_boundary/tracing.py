@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def overturning_boundary(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """The boundary curves of overturning on a window of the control space.
+    """Trace the boundary curves of overturning on a window of the control space.
 
     Parameters
     ----------
@@ -99,16 +100,17 @@ def overturning_boundary(
     in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
     eta = RESTITUTION.number(known_restitution(restitution, alpha))
-    angle, made = check_one_alpha(alpha), as_pulse(motion)
+    angle, pulse = check_one_alpha(alpha), as_pulse(motion)
     restraint = one_restraint(stiffness, prestress, damping)
     if not restraint:
-        return boundaries_at_angles(made, [(eta, angle, nodes)], frequency_ratio, slenderness, threads, stop)[0]
+        return boundaries_at_angles(pulse, [(eta, angle, nodes)], frequency_ratio, slenderness, threads, stop)[0]
     threads = None if threads is None else integer("threads", threads, 1, math.inf)
-    solver = block_solver(made, threads, stop, restraint)
+    solver = block_solver(pulse, threads, stop, restraint)
     curves = trace_curves(solver, [(eta, angle, nodes)], frequency_ratio, slenderness)[0]
     curves["slenderness"] = curves["slenderness"] / (1.0 + restraint.get("prestress", 0.0))
-    own = {"pulse": made.name, "restitution": eta, "alpha": angle}
-    return curves.assign_attrs(own | {name: float(value) for name, value in restraint.items()} | curves.attrs)
+    attributes = {"pulse": pulse.name, "restitution": eta, "alpha": angle}
+    attributes |= {name: float(value) for name, value in restraint.items()}
+    return curves.assign_attrs(attributes | curves.attrs)
 
 
 def boundaries_at_angles(
@@ -119,17 +121,18 @@ def boundaries_at_angles(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> list[xr.Dataset]:
-    """`overturning_boundary` at several angles together, in less time than one after the other.
+    """Trace `overturning_boundary` at several angles together, in less time than one after the other.
 
     `blocks`: restitution, angle [rad], 0 for the slender limit, and number of nodes, each angle once.
     """
-    made = as_pulse(motion)
+    pulse = as_pulse(motion)
     threads = None if threads is None else integer("threads", threads, 1, math.inf)
-    traced = trace_curves(block_solver(made, threads, stop), blocks, frequency_ratio, slenderness)
-    return [
-        curves.assign_attrs({"pulse": made.name, "restitution": eta, "alpha": alpha} | curves.attrs)
-        for curves, (eta, alpha, _) in zip(traced, blocks, strict=True)
-    ]
+    traced = trace_curves(block_solver(pulse, threads, stop), blocks, frequency_ratio, slenderness)
+    boundaries = []
+    for curves, (eta, alpha, _) in zip(traced, blocks, strict=True):
+        attributes = {"pulse": pulse.name, "restitution": eta, "alpha": alpha}
+        boundaries.append(curves.assign_attrs(attributes | curves.attrs))
+    return boundaries
 
 
 def trace_curves(
@@ -138,32 +141,33 @@ def trace_curves(
     frequency_ratio: tuple[float, float],
     slenderness: tuple[float, float],
 ) -> list[xr.Dataset]:
-    """`boundaries_at_angles` by any solver, whose slenderness is 1 at uplift."""
+    """Trace `boundaries_at_angles` by any solver, whose slenderness is 1 at uplift."""
     low, high = check_ends(FREQUENCY_RATIO, frequency_ratio)
     bottom, top = check_ends(UPLIFTING, slenderness)
     points, rows = [], []
-    for eta, alpha, given in blocks:
-        nodes = integer("nodes", given, 16, 4001)
+    for eta, alpha, count in blocks:
+        nodes = integer("nodes", count, 16, 4001)
         log_omega = np.linspace(np.log(low), np.log(high), nodes)
         points.append(np.stack(np.broadcast_arrays(0.0, log_omega, eta, alpha), axis=1))
         rows.append(_rows(bottom, top, nodes, log_omega.size))
     work = Work([alpha for _, alpha, _ in blocks])
-    classify, classify_regions = (classifier(solve, code, work) for code in (layer_code, region_code))
-    tracer = Tracer(np.concatenate(points), classify, classify_regions, work)
+    by_layer, by_region = classifier(solve, layer_code, work), classifier(solve, region_code, work)
+    tracer = Tracer(np.concatenate(points), by_layer, by_region, work)
     tracer.trace(rows)
-    return [
-        _traced(tracer, eta, alpha, float(np.diff(own, axis=0).max()))
-        for (eta, alpha, _), own in zip(blocks, rows, strict=True)
-    ]
+    boundaries = []
+    for (eta, alpha, _), grid in zip(blocks, rows, strict=True):
+        boundaries.append(_traced(tracer, eta, alpha, float(np.diff(grid, axis=0).max())))
+    return boundaries
 
 
 def _traced(tracer: Tracer, eta: float, alpha: float, node_distance: float) -> xr.Dataset:
-    """The curves of one angle, with the chords halved that leave them by too much."""
+    """Build the curves of one angle; chords that leave them by too much are halved."""
     block = np.array(eta), np.array(alpha)
     angle = tracer.work.angle(block[1])
     panels = [k for k in tracer.panels if tracer.angle[k] == angle]
+    joins = chain.from_iterable(tracer.joins[k] for k in panels)
     chains, error, uncounted_error, unknown = refine_chords(
-        chains_of(join for k in panels for join in tracer.joins[k]),
+        chains_of(joins),
         tracer.classify_regions,
         block,
         largest=CHORD,
@@ -185,21 +189,21 @@ def _traced(tracer: Tracer, eta: float, alpha: float, node_distance: float) -> x
 
 
 def _rows(low: float, high: float, nodes: int, columns: int) -> Floats:
-    """Nodes of 1/a (nodes, columns), as dense as half of them uniform and half of them uniform in the logarithm.
+    """Return nodes of 1/a (nodes, columns), as dense as half of them uniform and half of them uniform in the logarithm.
 
     Near onset the regions are thin in 1/a, under strong pulses in a. The nodes between the two ends lie elsewhere in
     each column, so that a thin region that runs along omega meets one of them sooner or later.
     """
     fine = np.linspace(low, high, 16 * nodes)
-    passed = (fine - low) / (high - low) + np.log(fine / low) / np.log(high / low)
+    density = (fine - low) / (high - low) + np.log(fine / low) / np.log(high / low)
     shift = np.arange(columns) * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 - 0.5
-    place = np.arange(nodes)[:, None] + 0.98 * shift
-    place[0], place[-1] = 0.0, nodes - 1.0
-    return np.interp(place * 2.0 / (nodes - 1), passed, fine)
+    position = np.arange(nodes)[:, None] + 0.98 * shift
+    position[0], position[-1] = 0.0, nodes - 1.0
+    return np.interp(position * 2.0 / (nodes - 1), density, fine)
 
 
 def _as_dataset(chains: Chains) -> xr.Dataset:
-    """The chains, cut where the outcome on their other side changes."""
+    """Convert chains to curves, cut where the outcome on their other side changes."""
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
     def curve(values: NDArray[np.integer[Any]], long_name: str) -> tuple[object, ...]:
@@ -213,8 +217,8 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
     repeated = starts[1:][np.diff(chains.chain)[starts[1:] - 1] == 0] - 1
     points = np.sort(np.concatenate([np.arange(size), repeated]))
     sizes = np.diff(np.append(starts, size)) + np.isin(starts - 1, repeated)
-    own, neighbour = chains.own[starts], chains.neighbour[starts]
-    outcomes, impacts = zip(*(decode_outcomes(code) for code in (own, neighbour)), strict=True)
+    outcome, impacts = decode_outcomes(chains.region[starts])
+    neighbour_outcome, neighbour_impacts = decode_outcomes(chains.neighbour[starts])
     return xr.Dataset(
         {
             "slenderness": variable("point", chains.slenderness[points], "1", "g tan(alpha)/a_g (3.6)"),
@@ -223,9 +227,9 @@ def _as_dataset(chains: Chains) -> xr.Dataset:
             ),
             "row_size": variable("curve", sizes.astype(np.int32), "1", "points", sample_dimension="point"),
             "outline": curve(chains.chain[starts].astype(np.int32), "number of the outline that holds the curve"),
-            "outcome": curve(outcomes[0], "outcome in the region that the curve bounds"),
-            "impacts": curve(impacts[0], "impacts before overturning there"),
-            "neighbour_outcome": curve(outcomes[1], "outcome on the other side"),
-            "neighbour_impacts": curve(impacts[1], "impacts before overturning on the other side"),
+            "outcome": curve(outcome, "outcome in the region that the curve bounds"),
+            "impacts": curve(impacts, "impacts before overturning there"),
+            "neighbour_outcome": curve(neighbour_outcome, "outcome on the other side"),
+            "neighbour_impacts": curve(neighbour_impacts, "impacts before overturning on the other side"),
         }
     )

@@ -34,7 +34,7 @@ def _print_version(value: bool) -> None:
 
 
 def _warning_line(message: Any, *_: Any, **__: Any) -> str:
-    """A warning without the line of the source."""
+    """Return a warning without the line of the source."""
     return f"warning: {message}\n"
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def read_pulse(text: str) -> AbstractPulse:
-    """The pulse of a name with its parameters, or else that in a file; a leading minus mirrors either."""
+    """Return the pulse of a name with its parameters, or read it from a file; a leading minus mirrors it."""
     name = text.removeprefix("-")
     if name.partition("(")[0].strip() in pulse_names():
         return as_pulse(text)
@@ -32,7 +32,7 @@ def read_pulse(text: str) -> AbstractPulse:
 
 
 def read_body(width: str | None, height: str | None, description: str | None) -> RespondingBody:
-    """The block of a width and a height, or the body that a text describes."""
+    """Return the block of a width and a height, or the body that a text describes."""
     if description is not None:
         reject_given("--body", width=width, height=height)
         from rocking._dimensional.body_kinds import body

@@ -51,7 +51,7 @@ def reported_errors(options: Mapping[str, str] | None = None, source: str = "") 
 
 
 def _texts(error: InvalidArgumentError) -> str:
-    """Each wrong value of an error in a line."""
+    """Return the wrong values of an error, each in a line."""
     from rocking._base.errors import SeveralArgumentsError
 
     if not isinstance(error, SeveralArgumentsError):
@@ -63,7 +63,7 @@ def _texts(error: InvalidArgumentError) -> str:
 
 
 def _text(error: InvalidArgumentError) -> str:
-    """One line about an argument; of a file, where in it."""
+    """Return a line about an argument; of a file, where in it."""
     from rocking._base.errors import UnreadableFileError
 
     text = f"{error.value!r} is not allowed; allowed: {error.allowed}"

@@ -86,7 +86,7 @@ def fragility(
 
 
 def read_suite(configuration: str) -> SuiteConfiguration:
-    """The suite in a file."""
+    """Read the suite in a file."""
     from rocking._base.errors import InvalidArgumentError, UnreadableFileError
     from rocking.suites.configuration import suite_configuration
 
@@ -103,7 +103,7 @@ def read_suite(configuration: str) -> SuiteConfiguration:
 
 
 def _parsed(ending: str, text: str) -> Any:
-    """The content of a file by the ending of its name: TOML, JSON, else YAML."""
+    """Parse the content of a file by the ending of its name: TOML, JSON, else YAML."""
     if ending == ".toml":
         import tomllib
 
@@ -121,7 +121,7 @@ def _parsed(ending: str, text: str) -> Any:
 
 
 def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
-    """The fragility of a suite; remarks and warnings are printed on stderr."""
+    """Compute the fragility of a suite; remarks and warnings are printed on stderr."""
     from rocking._cli.printing import progress
     from rocking.suites.fragility import fragility as fragility_of
 
@@ -145,7 +145,7 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
 
 
 def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
-    """The table of friction demand, and of the effect of restitution and sampling."""
+    """Compute the table of friction demand, and of the effect of restitution and sampling."""
     from rocking._cli.printing import progress
     from rocking.suites.sensitivity import suite_sensitivity
     from rocking.suites.table import sensitivity_table

@@ -16,14 +16,14 @@ TABLE = "Layout of a table"
 
 
 def _pulse_names(incomplete: str) -> list[str]:
-    """Names of pulses, for the completion of the shell."""
+    """Return the names of pulses, for the completion of the shell."""
     from rocking._excitation.pulses import pulse_names
 
     return [name for name in pulse_names() if name.startswith(incomplete)]
 
 
 def _body_names(incomplete: str) -> list[str]:
-    """Names of the kinds of bodies, for the completion of the shell."""
+    """Return the names of the kinds of bodies, for the completion of the shell."""
     return [name for name in BODIES if name.startswith(incomplete)]
 
 

@@ -116,7 +116,7 @@ def print_dataset(data: xr.Dataset, dimension: str, output_format: str) -> None:
 
 
 def response_values(response: BodyResponse) -> dict[str, Any]:
-    """Values of the response of one body by name: its declared fields, and the thresholds."""
+    """Return the values of the response of one body by name: its declared fields, and the thresholds."""
     body = {} if response.body.moves_as_block else {"body": response.body.description}
     if "pulse" in response.motion:
         strength = {"peak_acceleration": response.peak_acceleration, "period": response.period}
@@ -148,25 +148,25 @@ def print_response(response: BodyResponse, values: Mapping[str, Any], output_for
     for kind in ("warnings", "notes"):
         for text in values[kind]:
             typer.echo(f"{kind[:-1]}: {text}")
-    changes = None if values["thresholds"] is None else ", ".join(map(str, response.thresholds or ())) or "none"
+    changes = None
+    if values["thresholds"] is not None:
+        changes = ", ".join(map(str, response.thresholds or ())) or "none"
     print_values({name: values.get(name) for name in ESSENTIAL} | {"thresholds": changes}, units)
     typer.echo("every value: --format json")
 
 
 def unit_label(unit: str) -> str:
-    """A unit as people write it; "" for a number."""
+    """Return a unit as people write it; "" for a number."""
     return LABELS.get(unit, unit)
 
 
 def printable(text: str) -> str:
-    """A text without control characters, which a terminal would obey."""
-    if text.isprintable():
-        return text
+    """Replace the control characters of a text, which a terminal would obey."""
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
 
 
 def _console() -> Console:
-    """Standard output; where it is no terminal, lines are as long as they have to be."""
+    """Return the standard output; where it is no terminal, lines are as long as they have to be."""
     from rich.console import Console
 
     console = Console(highlight=False)
@@ -200,7 +200,7 @@ def _text(value: Any) -> str:
 
 
 def _csv_cell(value: Any) -> Any:
-    """A value of one cell: texts of a list separated by semicolons, numbers and truth values by spaces."""
+    """Return the value of a cell: texts of a list separated by semicolons, numbers and truth values by spaces."""
     if not isinstance(value, list):
         return value
     if all(isinstance(item, str) for item in value):
@@ -210,7 +210,7 @@ def _csv_cell(value: Any) -> Any:
 
 
 def _values(variable: xr.DataArray) -> Any:
-    """The values of a variable as JSON holds them: names of outcomes, None for what is not finite."""
+    """Return the values of a variable as JSON holds them: names of outcomes, None for what is not finite."""
     if variable.name == "outcome":
         from rocking._model.outcome import Outcome
 
@@ -220,6 +220,6 @@ def _values(variable: xr.DataArray) -> Any:
 
 
 def _finite(value: Any) -> Any:
-    """A value of a data set as JSON holds it."""
+    """Return a value of a data set as JSON holds it."""
     plain = value.item() if hasattr(value, "item") else value
     return finite(plain) if isinstance(plain, float) else plain

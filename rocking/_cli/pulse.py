@@ -117,8 +117,8 @@ def _print_responses(file: str, table: BlockTable, output_format: str) -> None:
         bad_rows = [{"row": bad.row, "reasons": bad.reasons, "cells": bad.cells} for bad in read.bad_rows]
         print_json({**responses, "table": read.cells, "bad_rows": bad_rows})
     elif output_format == "csv":
-        given = {header.partition(" [")[0] for header in read.columns.values()}
-        results = {name: values for name, values in responses.items() if name not in given}
+        column_names = {header.partition(" [")[0] for header in read.columns.values()}
+        results = {name: values for name, values in responses.items() if name not in column_names}
         headers = {f"{name} [{units[name]}]" if units.get(name) else name for name in results}
         cells = {f"{label} (given)" if label in headers else label: values for label, values in read.cells.items()}
         print_columns(cells | results, "csv", units)
@@ -242,7 +242,7 @@ def boundary(
 def _window(
     body: RespondingBody, period_min: str | None, period_max: str | None, frequency_ratios: tuple[float, float]
 ) -> tuple[float, float]:
-    """The shortest and the longest period [s]; an end that is not stated is that of the frequency ratios [-]."""
+    """Return the shortest and the longest period [s]; an end that is not stated is that of the frequency ratios [-]."""
     from rocking._base.quantities import PERIOD
     from rocking._model.checks import check_window
 

@@ -200,26 +200,22 @@ class Direction:
 def _worst_direction(
     body: RespondingBody, pair: tuple[Record, Record], scale: float, restitution: float | str, thresholds: bool
 ) -> Direction:
-    """The direction in which a body overturns at the lowest factor, or with the largest rotation."""
+    """Search the direction in which a body overturns at the lowest factor, or with the largest rotation."""
     from rocking._excitation.records.pair import PAIR_ANGLES, checked_pair, rotated
 
     checked_pair(pair)
     motions = [motion for _, motion in rotated(*pair)]
     if not body.moves_as_block:
         motions += [motion.mirrored() for motion in motions]  # in the opposite directions
-    directions = [
-        Direction(
-            180.0 * k / PAIR_ANGLES,
-            motion,
-            body.response(motion, scale=scale, restitution=restitution, error_bound=True, thresholds=thresholds),
-        )
-        for k, motion in enumerate(motions)
-    ]
+    directions = []
+    for k, motion in enumerate(motions):
+        solved = body.response(motion, scale=scale, restitution=restitution, error_bound=True, thresholds=thresholds)
+        directions.append(Direction(180.0 * k / PAIR_ANGLES, motion, solved))
     return min(directions, key=lambda direction: direction.order)
 
 
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
-    """The printed values of the pulse fitted to a record, by name."""
+    """Return the printed values of the pulse fitted to a record, by name."""
     from rocking.suites.pulse_fit import fit_pulse, summary_of
 
     values = summary_of(fit_pulse(motion, blocks=block))

@@ -50,7 +50,7 @@ class FileVersion(NamedTuple):
 
     @classmethod
     def of(cls, status: os.stat_result) -> FileVersion:
-        """The version of a file or folder from its status; times in ns, size in bytes."""
+        """Return the version of a file or folder from its status; times in ns, size in bytes."""
         return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
 
     @property
@@ -60,7 +60,7 @@ class FileVersion(NamedTuple):
 
 
 def version_of(path: Path) -> FileVersion | None:
-    """The current version of a file or folder; None if its status cannot be read."""
+    """Return the current version of a file or folder; None if its status cannot be read."""
     try:
         return FileVersion.of(path.stat())
     except OSError:
@@ -94,11 +94,11 @@ class DataFile:
             raise
 
     def fileno(self) -> int:
-        """The file descriptor."""
+        """Return the file descriptor."""
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes of the file, of one version.
+        """Read all bytes of the file, of one version.
 
         Raises `DatasetError` if it cannot be read, is larger than `MAX_FILE_BYTES`, or changes all the time.
         """
@@ -136,7 +136,7 @@ class DataFile:
         self.close()
 
     def _settled(self) -> FileVersion:
-        """The current version of the file, after a wait if a later version could not be distinguished from it."""
+        """Return the current version of the file, after a wait while a later version could not be distinguished."""
         status = os.fstat(self.fileno())
         if not stat.S_ISREG(status.st_mode):
             raise OSError(errno.EINVAL, "not a regular file")
@@ -162,7 +162,7 @@ class VersionCache(Generic[K, V]):
         return len(self._entries)
 
     def current(self, key: K) -> V | None:
-        """The value of a key if the file at its path has not changed since; None otherwise."""
+        """Return the value of a key if the file at its path has not changed since; None otherwise."""
         entry = self._entries.get(key)
         if entry is None or entry[1] != version_of(entry[0]):
             return None
@@ -176,7 +176,7 @@ class VersionCache(Generic[K, V]):
         return value
 
     def items(self) -> list[tuple[K, V]]:
-        """All keys and values; those that were stored or used last are at the end."""
+        """Return all keys and values; those that were stored or used last are at the end."""
         return [(key, entry[2]) for key, entry in list(self._entries.items())]
 
     def forget(self, key: K) -> None:
@@ -184,7 +184,7 @@ class VersionCache(Generic[K, V]):
         self._entries.pop(key, None)
 
     def value(self, key: K, file: DataFile, compute: Callable[[DataFile], V]) -> V:
-        """The value of a key for an open file, computed once per version of the file."""
+        """Return the value of a key for an open file, computed once per version of the file."""
         entry = self._entries.get(key)
         if entry is not None and entry[1] == file.version:
             return entry[2]
@@ -230,17 +230,17 @@ class Catalogue:
             raise _unreadable(name, error) from error
 
     def product(self, name: str) -> DatasetFile:
-        """Size and sha256 of a data set; raises as `open`."""
+        """Return size and sha256 of a data set; raises as `open`."""
         with self.open(name) as file:
             return self.product_of(file)
 
     def product_of(self, file: DataFile) -> DatasetFile:
-        """Size and sha256 of an open data set, computed once per version of the file."""
+        """Return size and sha256 of an open data set, computed once per version of the file."""
         with self.lock:
             return self._products.value(file.name, file, self._dataset_file)
 
     def known_digest(self, file: DataFile) -> str | None:
-        """The sha256 of an open data set if it was computed for this version of the file before."""
+        """Return the sha256 of an open data set if it was computed for this version of the file before."""
         product = self._products.current(file.name)
         return None if product is None else product.sha256
 
@@ -249,7 +249,7 @@ class Catalogue:
         return DatasetFile(file.name, len(content), sha256_of(content))
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
-        """A data set, read into memory and checked, and its version; raises as `open`, also if it is damaged."""
+        """Read and check a data set; return its version and the data. Raises as `open`, also if it is damaged."""
         with self.open(name) as file, self.lock:
             content = file.content()
             return self.product_of(file), decode_dataset(content, name)

@@ -8,12 +8,12 @@ from pathlib import Path
 
 
 def sha256_of(content: bytes) -> str:
-    """sha256 (hex) of bytes, the version of a data set whose file holds them."""
+    """Return the sha256 (hex) of bytes, the version of a data set whose file holds them."""
     return hashlib.sha256(content).hexdigest()
 
 
 def sha256_of_file(path: Path) -> str:
-    """The same for a file, which may be larger than the memory."""
+    """Return the sha256 (hex) of a file, which may be larger than the memory."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -29,7 +29,7 @@ def append_checksum(path: Path) -> None:
 
 
 def find_damage(content: bytes) -> str | None:
-    """Description of the damage of a file with a digest at its end, a missing or wrong digest; None if it is intact."""
+    """Describe the damage of a file with a digest at its end, a missing or wrong digest; None if it is intact."""
     body, end = content[:-_LENGTH], content[-_LENGTH:]
     if not end.startswith(_MARK):
         return "damaged, or not written by this package: no digest at its end"

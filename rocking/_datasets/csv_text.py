@@ -17,7 +17,7 @@ _NEGATIVE = re.compile("-[0-9]+(?:[.,][0-9]+)?")
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
-    """A header line with the names of the columns, and the rows.
+    """Return a header line with the names of the columns, and the rows.
 
     Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
     comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading apostrophe,
@@ -27,13 +27,14 @@ def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
 
 
 def csv_header(names: Iterable[str]) -> str:
-    """The header line alone, for a table that is written in parts."""
+    """Return the header line alone, for a table that is written in parts."""
     return _lines([map(_cell, names)])
 
 
 def csv_rows(columns: Mapping[str, Sequence[Any]]) -> str:
-    """The rows alone."""
-    return _lines(zip(*(map(_cell, column) for column in columns.values()), strict=True))
+    """Return the rows alone."""
+    cells = [map(_cell, column) for column in columns.values()]
+    return _lines(zip(*cells, strict=True))
 
 
 def _lines(rows: Iterable[Iterable[Any]]) -> str:
@@ -48,11 +49,11 @@ def _cell(value: Any) -> Any:
         return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _without_formula(value) if isinstance(value, str) else value
+    return _escaped(value) if isinstance(value, str) else value
 
 
-def _without_formula(text: str) -> str:
-    """A text with an apostrophe before each part that a spreadsheet would take for a formula."""
+def _escaped(text: str) -> str:
+    """Put an apostrophe before each part of a text that a spreadsheet would take for a formula."""
     if text.isidentifier():  # such as the name of an outcome, a million times
         return text
     parts = re.split(f"([{_DELIMITERS}])", text)

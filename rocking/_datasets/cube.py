@@ -132,14 +132,11 @@ def build_spectrum_dataset(
     frequency_ratio); `axes`: these [rad], [-], [-], ascending.
     """
     name = as_pulse(pulse).name
-    cube = xr.Dataset(
-        {
-            key: (DIMENSIONS, np.asarray(variables[key], dtype=dtype), {**MODEL_RESULT, **attributes})
-            for key, (dtype, attributes) in (VARIABLES | RESTITUTION_ERROR | OPTIONAL_VARIABLES).items()
-            if key in variables
-        },
-        coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS},
-    )
+    arrays = {}
+    for key, (dtype, attributes) in (VARIABLES | RESTITUTION_ERROR | OPTIONAL_VARIABLES).items():
+        if key in variables:
+            arrays[key] = (DIMENSIONS, np.asarray(variables[key], dtype=dtype), MODEL_RESULT | attributes)
+    cube = xr.Dataset(arrays, {key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS})
     return describe(
         cube.assign_coords(scalar_coordinates(pulse, restitution)),
         title=f"Rocking spectrum of the rigid block under the {name} pulse, restitution {restitution:.2f}",
@@ -184,7 +181,7 @@ def build_errors_dataset(
 
 
 def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[str, xr.Variable]:
-    """The scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set.
+    """Return the scalar coordinates `pulse` (a flag, its name in an attribute) and `restitution` of a data set.
 
     A pulse given by samples has a flag of its own, its digest in an attribute, and the coordinates `SAMPLES`.
     """
@@ -200,7 +197,7 @@ def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[st
     if isinstance(shape, SampledPulse):
         number, named["pulse_digest"] = -1, shape.digest
         arrays = dict(zip(SAMPLES, (shape.phases, shape.values), strict=True))
-        samples = {key: xr.Variable("pulse_sample", arrays[key], about) for key, about in SAMPLES.items()}
+        samples = {key: xr.Variable("pulse_sample", arrays[key], SAMPLES[key]) for key in SAMPLES}
     if number < 0:
         names = (*names, "sampled" if samples else "registered")
     flags = {
@@ -216,7 +213,7 @@ def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[st
 
 
 def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
-    """The pulse of a data set: its name, or the pulse made again from the stored samples."""
+    """Return the pulse of a data set: its name, or the pulse made again from the stored samples."""
     name = str(dataset["pulse"].attrs["pulse_name"])
     if not dataset.variables.keys() >= SAMPLES.keys():
         return name
@@ -225,7 +222,7 @@ def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
 
 
 def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
-    """The data set with the global attributes of all data sets and the given ones (title, summary, id, ...).
+    """Add the global attributes of all data sets and those of this one (title, summary, id, ...).
 
     They contain no time of creation: equal content gives equal bytes.
     """
@@ -261,7 +258,7 @@ def check_file(path: Path | str) -> None:
 
 
 def read_content(path: Path | str) -> bytes:
-    """The bytes of a data set file; raises `DatasetError`."""
+    """Read the bytes of a data set file; raises `DatasetError`."""
     path = Path(path)
     try:
         if path.is_file():
@@ -279,7 +276,7 @@ def reject_large(name: Path | str, size: int) -> None:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """`read_dataset` from the bytes of a file; messages name `path`."""
+    """Read a data set from the bytes of a file, as `read_dataset`; messages name `path`."""
     with open_checked(content, path) as opened:
         dataset = opened.load()
         if dataset.attrs["content_sha256"] != _content_digest(dataset):
@@ -291,7 +288,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
 
 @contextmanager
 def open_checked(content: bytes, path: Path | str) -> Iterator[xr.Dataset]:
-    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block."""
+    """Open the data set of the bytes of a file whose digest at its end is right, inside of the `with` block."""
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
@@ -319,7 +316,7 @@ def read_spectrum(path: Path | str) -> xr.Dataset:
 
 
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
-    """`read_spectrum` from the bytes of a file; messages name `path`."""
+    """Read a cube from the bytes of a file, as `read_spectrum`; messages name `path`."""
     cube = decode_dataset(content, path)
     check_spectrum(cube, path)
     return cube
@@ -327,8 +324,9 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
 
 def check_spectrum(cube: xr.Dataset, path: Path | str) -> None:
     """Refuse a data set, which may be open, that has not the schema of spectrum cubes."""
-    present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
-    for name, (dtype, _) in (VARIABLES | present).items():
+    for name, (dtype, _) in (VARIABLES | OPTIONAL_VARIABLES).items():
+        if name in OPTIONAL_VARIABLES and name not in cube:
+            continue
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
             raise DatasetError(f"{path}: no variable `{name}` of type {dtype} over {DIMENSIONS}; build it again")
     for name in DIMENSIONS:
@@ -352,7 +350,7 @@ def _encoding(dataset: xr.Dataset, chunks: Mapping[str, int]) -> dict[str, dict[
 
 
 def _content_digest(dataset: xr.Dataset) -> str:
-    """sha256 over names, types, shapes and values of all variables."""
+    """Return the sha256 over names, types, shapes and values of all variables."""
     digest = hashlib.sha256()
     for name in sorted(str(name) for name in dataset.variables):
         values = np.ascontiguousarray(dataset.variables[name].values)

@@ -20,16 +20,17 @@ _LOCK = threading.RLock()
 
 @contextmanager
 def open_netcdf(source: Path | str | bytes, *, cache: bool = True) -> Iterator[xr.Dataset]:
-    """A data set, open inside of the `with` block; other threads that call this function wait until it is closed.
+    """Open a data set inside of the `with` block; other threads that call this function wait until it is closed.
 
     `source` is a path or the content of a file. `cache`: whether xarray keeps the values that are read. Raises whatever
     the libraries raise for a damaged file.
     """
     with _LOCK:
-        opened: Any = (  # closed here and not by the garbage collector, which runs in any thread
-            netCDF4.Dataset("in memory", memory=source) if isinstance(source, bytes) else netCDF4.Dataset(source)
-        )
-        with closing(opened):
+        if isinstance(source, bytes):
+            opened: Any = netCDF4.Dataset("in memory", memory=source)
+        else:
+            opened = netCDF4.Dataset(source)
+        with closing(opened):  # closed here and not by the garbage collector, which runs in any thread
             store = NetCDF4DataStore(opened)  # type: ignore[no-untyped-call]
             yield xr.open_dataset(store, decode_times=False, cache=cache)
 

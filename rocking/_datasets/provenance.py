@@ -11,10 +11,10 @@ from typing import Any
 
 
 def settings_digest(settings: Mapping[str, Any]) -> str:
-    """sha256 (hex) of settings (numbers, strings, lists, mappings), independent of the order of their keys."""
+    """Return the sha256 (hex) of settings (numbers, strings, lists, mappings), whatever the order of their keys."""
     return hashlib.sha256(settings_text(settings).encode()).hexdigest()
 
 
 def settings_text(settings: Mapping[str, Any]) -> str:
-    """The settings as JSON with sorted keys, the text whose digest is `settings_digest`."""
+    """Return the settings as JSON with sorted keys, the text whose digest is `settings_digest`."""
     return json.dumps(settings, sort_keys=True)

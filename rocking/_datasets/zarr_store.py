@@ -79,7 +79,7 @@ def _write(paths: list[Path], folder: Path) -> None:
 
 
 def _head(path: Path) -> xr.Dataset:
-    """The axes of a cube, its attributes, and the type of each variable, without values."""
+    """Read the axes of a cube, its attributes, and the type of each variable, without values."""
     with open_netcdf(path) as cube:
         axes = cube.coords.to_dataset().load()
         types = {f"type of {name}": str(variable.dtype) for name, variable in cube.data_vars.items()}
@@ -87,11 +87,11 @@ def _head(path: Path) -> xr.Dataset:
 
 
 def _common_attributes(heads: list[xr.Dataset]) -> dict[str, Any]:
-    """The global attributes in which all cubes agree, with a title of the store."""
+    """Return the global attributes in which all cubes agree, with a title of the store."""
     first = heads[0].attrs
-    common = {
-        name: value for name, value in first.items() if all(_agree(value, head.attrs.get(name)) for head in heads)
-    }
+    common = dict(first)
+    for head in heads:
+        common = {name: value for name, value in common.items() if _agree(value, head.attrs.get(name))}
     pulse = str(heads[0]["pulse"].attrs["pulse_name"])
     title = f"Rocking spectra of the rigid block under the {pulse} pulse, over the restitution"
     return common | {"id": f"zarr/{pulse}", "title": title}
@@ -104,13 +104,10 @@ def _agree(value: Any, other: Any) -> bool:
 
 
 def _encoding(cube: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """A chunk for each angle of each restitution."""
+    """Return the encoding with a chunk for each angle of each restitution."""
     import numcodecs  # noqa: PLC0415  # as zarr, above
 
-    sizes = (1, 1, *(cube.sizes[dimension] for dimension in DIMENSIONS[1:]))
+    sizes = (1, 1, cube.sizes[DIMENSIONS[1]], cube.sizes[DIMENSIONS[2]])
     compressor = numcodecs.Zstd(level=COMPRESSION_LEVEL)
-    return {
-        str(name): {"chunks": sizes, "compressors": compressor}
-        for name, variable in cube.data_vars.items()
-        if variable.dims == STORE_DIMENSIONS
-    }
+    names = [str(name) for name, variable in cube.data_vars.items() if variable.dims == STORE_DIMENSIONS]
+    return {name: {"chunks": sizes, "compressors": compressor} for name in names}

@@ -22,13 +22,13 @@ class Impulse:
 
     @property
     def ends_at_rest(self) -> bool:
-        """Whether the ground has no velocity after the pulse."""
+        """True if the ground has no velocity after the pulse."""
         return abs(self.final) <= STILL * self.largest
 
 
 @lru_cache(maxsize=64)
 def impulse_of(pulse: AbstractPulse) -> Impulse:
-    """The integrals of a pulse, split where f' or f is zero: between them the velocity is monotone."""
+    """Integrate a pulse, split where f' or f is zero: between them the velocity is monotone."""
     samples = pulse.samples
     ends = np.array([pulse.start, *pulse.stationary, pulse.end]) if samples is None else samples[0]
     low, high = ends[:-1].copy(), ends[1:].copy()

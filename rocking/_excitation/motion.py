@@ -43,7 +43,7 @@ class AbstractMotion(ABC):
     """Largest strength over that of uplift that is searched unless stated [-]."""
 
     is_scanned: ClassVar[bool]
-    """Whether searches try strengths a stated distance apart, because the outcome may change anywhere between."""
+    """True if searches try strengths a stated distance apart, because the outcome may change anywhere between."""
 
     name: str
     remarks: tuple[str, ...] = ()
@@ -61,7 +61,7 @@ class AbstractMotion(ABC):
         return 0.0
 
     def refined(self) -> AbstractMotion | None:
-        """The motion with finer samples, which shows how much its sampling matters; None if that has no meaning."""
+        """Return the motion with finer samples, which shows how much sampling matters; None if that has no meaning."""
         return None
 
     @abstractmethod
@@ -78,7 +78,7 @@ class AbstractMotion(ABC):
 
 
 def stated_values(motion: AbstractMotion, quantities: Sequence[Quantity], **arguments: Any) -> dict[str, Any]:
-    """The arguments by name that state quantities which belong to a kind of motion.
+    """Return by name the arguments that state the quantities of a kind of motion.
 
     None becomes the default. Raises `InvalidArgumentError` where a quantity is missing, and for any other argument.
     """

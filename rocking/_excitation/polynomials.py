@@ -55,69 +55,76 @@ class Polynomials:
         return 0.5 * np.diff(self.ends)
 
     def __call__(self, phi: Array) -> Array:
-        """The function at phases within the window."""
+        """Evaluate the function at phases within the window."""
         piece = np.maximum(np.searchsorted(self.ends[:-1], phi, side="right") - 1, 0)
         return _evaluate(self.coefficients[piece], (phi - self.middles[piece]) / self.halves[piece])
 
     def times(self, factor: float) -> Polynomials:
-        """`factor` times the function."""
+        """Multiply the function by a factor."""
         return Polynomials(self.ends, self.coefficients * factor)
 
     def turning_phases(self) -> tuple[float, ...]:
-        """The phases strictly inside the window at which the slope changes its sign [rad], but for rounding."""
+        """Search the phases strictly inside the window at which the slope changes its sign [rad], but for rounding."""
         count = len(self.coefficients)
         parts = 1 << (count - 1).bit_length()
-        places = np.array(sign_changes(self._normalised_slope(), 1.0, 1.0, 0.0, float(parts), parts))
-        phases = np.sort(np.append(self.ends, np.interp(places[places < count], np.arange(count + 1.0), self.ends)))
+        positions = np.array(sign_changes(self._normalised_slope(), 1.0, 1.0, 0.0, float(parts), parts))
+        phases = np.sort(
+            np.append(self.ends, np.interp(positions[positions < count], np.arange(count + 1.0), self.ends))
+        )
         values = self(phases)
         return tuple(phases[turning_points(values, WIGGLE * float(np.abs(values).max()))].tolist())
 
     def _normalised_slope(self) -> Callable[[Array], tuple[Array, Array]]:
-        """The slope at places i + (x + 1)/2 on the piece i, over a bound of its second derivative, and its derivative.
+        """Return the slope at i + (x + 1)/2 on piece i, over a bound of its second derivative, and its derivative.
 
         1 where the function is constant but for rounding, and beyond the last piece.
         """
-        slope, curvature, third = (
-            np.asarray(polynomial.polyder(self.coefficients, k, axis=1) * 2.0**k, np.float64) for k in (1, 2, 3)
-        )
-        most = np.abs(slope).sum(axis=1)
-        bound = np.maximum(np.abs(third).sum(axis=1), most)
-        constant = most <= WIGGLE * np.abs(self.coefficients).max()
+        slope, curvature, third = self._derivative(1), self._derivative(2), self._derivative(3)
+        largest = np.abs(slope).sum(axis=1)
+        bound = np.maximum(np.abs(third).sum(axis=1), largest)
+        constant = largest <= WIGGLE * np.abs(self.coefficients).max()
         bound[constant], slope[constant], curvature[constant], slope[constant, 0] = 1.0, 0.0, 0.0, 1.0
 
-        def evaluate(place: Array) -> tuple[Array, Array]:
-            piece = np.minimum(place.astype(np.int64), len(bound) - 1)
-            x, beyond = 2.0 * (place - piece) - 1.0, place >= len(bound)
-            value, change = (_evaluate(one[piece], x) / bound[piece] for one in (slope, curvature))
+        def evaluate(position: Array) -> tuple[Array, Array]:
+            piece = np.minimum(position.astype(np.int64), len(bound) - 1)
+            x, beyond = 2.0 * (position - piece) - 1.0, position >= len(bound)
+            value, change = _evaluate(slope[piece], x) / bound[piece], _evaluate(curvature[piece], x) / bound[piece]
             return np.where(beyond, 1.0, value), np.where(beyond, 0.0, change)
 
         return evaluate
 
+    def _derivative(self, order: int) -> Array:
+        """Return the coefficients of a derivative by the position on the piece."""
+        return np.asarray(polynomial.polyder(self.coefficients, order, axis=1) * 2.0**order, np.float64)
+
 
 def _evaluate(coefficients: Array, x: Array) -> Array:
-    """Polynomials (n, degree + 1) at x (n,)."""
+    """Evaluate polynomials (n, degree + 1) at x (n,)."""
     return np.asarray(polynomial.polyval(x, coefficients.T, tensor=False))
 
 
-def turning_points(values: Array, least: float) -> list[int]:
-    """Indices at which a sequence turns, of changes by more than `least` only."""
+def turning_points(values: Array, tolerance: float) -> list[int]:
+    """Return the indices at which a sequence turns, of changes by more than `tolerance` only."""
     turns: list[int] = []
     extreme, lowest, highest, direction = 0, 0, 0, 0.0
     for i, value in enumerate(values):
         if direction == 0.0:
-            lowest, highest = (i if value < values[lowest] else lowest), (i if value > values[highest] else highest)
-            if values[highest] - values[lowest] > least:
+            if value < values[lowest]:
+                lowest = i
+            if value > values[highest]:
+                highest = i
+            if values[highest] - values[lowest] > tolerance:
                 direction, extreme = (1.0 if highest > lowest else -1.0), i
         elif (value - values[extreme]) * direction >= 0.0:
             extreme = i
-        elif (values[extreme] - value) * direction > least:
+        elif (values[extreme] - value) * direction > tolerance:
             turns.append(extreme)
             direction, extreme = -direction, i
     return turns
 
 
 def fit_polynomials(curve: Curve, start: float, end: float) -> Polynomials:
-    """Polynomials that equal `curve` between two phases [rad] to rounding.
+    """Fit polynomials that equal `curve` between two phases [rad] to rounding.
 
     `curve`: from phases (n,) to as many numbers; `start`, `end`: window [rad], start < end. Raises
     `InvalidArgumentError` if `curve` gives anything else, only zeros, or more than `MAX_POLYNOMIALS` pieces are needed.
@@ -147,22 +154,22 @@ def fit_polynomials(curve: Curve, start: float, end: float) -> Polynomials:
 
 
 def _fit(values: Curve, left: float, right: float, scale: float) -> Array | None:
-    """Coefficients of 1, x, x^2, ... on an interval; None if no polynomial is accurate."""
+    """Fit the coefficients of 1, x, x^2, ... on an interval; None if no polynomial is accurate."""
     middle, half = 0.5 * (left + right), 0.5 * (right - left)
     phases = np.clip(middle + half * _POINTS, left, right)
-    wanted, x = values(phases), (phases - middle) / half  # x of the rounded phases
-    spectrum = np.abs(_SPECTRUM @ wanted[: _NODES.size])
+    targets, x = values(phases), (phases - middle) / half  # x of the rounded phases
+    spectrum = np.abs(_SPECTRUM @ targets[: _NODES.size])
     left_out, noise = spectrum[DEGREE + 1 : DEGREE + 9].max(), spectrum[DEGREE + 9 :].max()
     if left_out > max(4.0 * noise, 0.125 * ROUNDING * scale):
         return None
     coefficients = np.zeros(DEGREE + 1)
     for _ in range(2):
-        rest = (wanted - polynomial.polyval(x, coefficients))[: _NODES.size]
-        powers = chebyshev.cheb2poly((_SPECTRUM @ rest)[: DEGREE + 1])
+        residual = (targets - polynomial.polyval(x, coefficients))[: _NODES.size]
+        powers = chebyshev.cheb2poly((_SPECTRUM @ residual)[: DEGREE + 1])
         coefficients[: powers.size] += powers
     slope = np.abs(polynomial.polyval(x, polynomial.polyder(coefficients))).max() / half
     allowed = ROUNDING * (scale + slope * max(abs(left), abs(right)))
-    error = np.abs(wanted - polynomial.polyval(x, coefficients)).max()
+    error = np.abs(targets - polynomial.polyval(x, coefficients)).max()
     return coefficients if error <= allowed else None
 
 

@@ -20,29 +20,29 @@ MAX_TEXT = 60  # characters of a value that an error repeats
 
 @dataclass(frozen=True)
 class PulseFile:
-    """What a file of a pulse holds."""
+    """Content of a file of a pulse."""
 
     arguments: dict[str, Any]  # arguments of `rocking.SampledPulse`
     name: str  # of the file
     table: Table | None  # None for JSON
 
     def error(self, error: InvalidArgumentError) -> InvalidArgumentError:
-        """An error about an argument as one about the file: with its name and the line."""
-        place, name = self.name, error.parameter
+        """Convert an error about an argument to one about the file, with its name and the line."""
+        position, name = self.name, error.parameter
         if error.index and self.table is None:
             name += f"[{error.index[0]}]"
         elif error.index and self.table is not None:
-            place += f", line {self.table.line_of(error.index[0]) + 1}"
-        return InvalidArgumentError("pulse", f"{place}: {name} {str(error.value)[:MAX_TEXT]}", error.allowed)
+            position += f", line {self.table.line_of(error.index[0]) + 1}"
+        return InvalidArgumentError("pulse", f"{position}: {name} {str(error.value)[:MAX_TEXT]}", error.allowed)
 
 
-def read_pulse_file(path: str | PathLike[str], most: int, **stated: Any) -> PulseFile:
-    """The arguments of a pulse of at most `most` samples from a file in a layout that is stated.
+def read_pulse_file(path: str | PathLike[str], limit: int, **columns: Any) -> PulseFile:
+    """Read the arguments of a pulse of at most `limit` samples from a file; `columns`: the layout that is stated.
 
     Raises `InvalidArgumentError` if the file cannot be read, with the parameter `path`; with the parameter `pulse`,
     naming the file and the line, if it does not hold a pulse.
     """
-    layout = stated_layout(("columns",), **stated)
+    layout = stated_layout(("columns",), **columns)
     file = Path(path)
     try:
         with file.open("rb") as stream:
@@ -55,15 +55,15 @@ def read_pulse_file(path: str | PathLike[str], most: int, **stated: Any) -> Puls
         text = TextFile(file.name, content)
         if text.content.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
             return PulseFile({"name": file.stem} | _parse_json(text), text.name, None)
-        table, time, acceleration = _read_columns(text, most, layout)
+        table, time, acceleration = _read_columns(text, limit, layout)
     except RecordFileError as error:
-        place = error.file if error.line is None else f"{error.file}, line {error.line}"
-        raise InvalidArgumentError("pulse", f"{place}: {str(error.value)[:MAX_TEXT]}", error.expected) from None
+        position = error.file if error.line is None else f"{error.file}, line {error.line}"
+        raise InvalidArgumentError("pulse", f"{position}: {str(error.value)[:MAX_TEXT]}", error.expected) from None
     return PulseFile({"acceleration": acceleration, "time": time, "name": file.stem}, text.name, table)
 
 
-def _read_columns(text: TextFile, most: int, layout: Layout) -> tuple[Table, Array | None, Array]:
-    """The columns, times if there are some, and accelerations, in any units.
+def _read_columns(text: TextFile, limit: int, layout: Layout) -> tuple[Table, Array | None, Array]:
+    """Read the columns, times if there are some, and accelerations, in any units.
 
     Where they are neither stated nor named, a single column holds accelerations, and two hold times and accelerations.
     """
@@ -79,21 +79,21 @@ def _read_columns(text: TextFile, most: int, layout: Layout) -> tuple[Table, Arr
             expected = "accelerations, or times and accelerations, named `acceleration` and `time` or stated"
             raise table.error(table.first, table.shown, expected)
         values, *times = table.columns([column for column in columns if column is not None], times=True)
-        if values.size > most:
-            raise text.error(None, f"{values.size} rows", f"at most {most}")
+        if values.size > limit:
+            raise text.error(None, f"{values.size} rows", f"at most {limit}")
         return table, times[0] if times else None, values
 
 
 def _parse_json(text: TextFile) -> dict[str, Any]:
-    """The object in a JSON file."""
+    """Parse the object in a JSON file."""
     try:
-        found = json.loads(text.content)
+        values = json.loads(text.content)
     except json.JSONDecodeError as error:
         raise text.error(error.lineno - 1, error.msg, "JSON") from None
     except (ValueError, RecursionError) as error:  # bytes that are no text, integers of thousands of digits
         raise text.error(None, error, "JSON") from None
-    if "acceleration" not in found:
+    if "acceleration" not in values:
         raise text.error(None, "no key acceleration", f"the keys {', '.join(KEYS)}, the first required")
-    if unknown := next((key for key in found if key not in KEYS), None):
+    if unknown := next((key for key in values if key not in KEYS), None):
         raise text.error(None, f"the key {unknown}", f"the keys {', '.join(KEYS)}, the first required")
-    return dict(found)
+    return dict(values)

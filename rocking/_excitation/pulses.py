@@ -169,7 +169,7 @@ _KINDS: dict[str, Kind[AbstractPulse]] = {
 }
 
 PULSE_NAMES: tuple[str, ...] = tuple(_KINDS)
-"""Names of the pulses of this package; a leading minus mirrors one. Files store their places: append only."""
+"""Names of the pulses of this package; a leading minus mirrors one. Files store their positions: append only."""
 
 
 _REGISTERED: dict[str, AbstractPulse] = {}
@@ -191,32 +191,32 @@ def register(pulse: AbstractPulse) -> None:
 
 
 def pulse_names() -> tuple[str, ...]:
-    """Names of all pulses: those of the package, then the registered ones."""
+    """Return the names of all pulses: those of the package, then the registered ones."""
     return (*PULSE_NAMES, *_REGISTERED)
 
 
 def pulse_number(name: str) -> int:
-    """Number of a pulse in data files: its place in `PULSE_NAMES`, which never changes, or -1 for a registered one."""
+    """Return the number of a pulse in data files, its index in `PULSE_NAMES`, or -1 for a registered one."""
     return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
 
 
 def as_motion(motion: Motion) -> GroundMotion:
-    """The motion itself, or the pulse of that name; anything else is refused."""
+    """Return the motion itself, or the pulse of that name; refuse anything else."""
     return motion if isinstance(motion, AbstractMotion) else pulse(motion)
 
 
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
-    """The pulse itself, or the one of that name; anything else is refused."""
+    """Return the pulse itself, or the one of that name; refuse anything else."""
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
 
 def pulse_parameters(name: str) -> Mapping[str, Quantity]:
-    """The parameters of a named pulse without its sign, with their defaults; of a registered one there are none."""
+    """Return the parameters of a named pulse without its sign, with their defaults; none of a registered one."""
     return _KINDS[name].fields if name in _KINDS else {}
 
 
 def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
-    """The pulse with a name, such as `"sine"`; `"-sine"` is the mirrored sine.
+    """Return the pulse with a name, such as `"sine"`; `"-sine"` is the mirrored sine.
 
     Parameters
     ----------
@@ -241,44 +241,44 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
     if parts is None:
         allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)
-    sign, base, written = parts
-    given: dict[str, Scalar] = {**written, **parameters}
-    if len(given) < len(written) + len(parameters):
+    sign, base, stated_values = parts
+    values: dict[str, Scalar] = {**stated_values, **parameters}
+    if len(values) < len(stated_values) + len(parameters):
         raise InvalidArgumentError("pulse", name, "each parameter once")
     registered = _REGISTERED.get(base)
-    if registered is not None and not given:
+    if registered is not None and not values:
         return registered.mirrored() if sign else registered
     if base not in _KINDS:
         one_of("pulse", base, pulse_names())
-        raise InvalidArgumentError(next(iter(given)), next(iter(given.values())), f"for {base}: no parameters")
-    return _build_pulse(sign, base, **(_KINDS[base].read(given, numbers=True) if given else {}))
+        raise InvalidArgumentError(next(iter(values)), next(iter(values.values())), f"for {base}: no parameters")
+    numbers = _KINDS[base].read(values, numbers=True) if values else {}
+    return _build_pulse(sign, base, **numbers)
 
 
 def split_pulses(text: str) -> list[str]:
-    """The texts of several pulses, separated by commas; those within brackets separate parameters."""
-    found, depth, start = [], 0, 0
-    for place, sign in enumerate(text):
+    """Split the texts of several pulses, separated by commas; those within brackets separate parameters."""
+    texts, depth, start = [], 0, 0
+    for position, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")
         if sign == "," and depth <= 0:
-            found.append(text[start:place].strip())
-            start = place + 1
-    return [*found, text[start:].strip()]
+            texts.append(text[start:position].strip())
+            start = position + 1
+    return [*texts, text[start:].strip()]
 
 
 def _digits(value: float) -> str:
-    """The shortest text of a number that reads the same."""
+    """Return the shortest text of a number that reads the same."""
     short = f"{value:g}"
     return short if float(short) == value else repr(value)
 
 
 @lru_cache(maxsize=256)
 def _build_pulse(sign: str, base: str, **parameters: float) -> AbstractPulse:
-    made = _KINDS[base].make(**parameters)
-    changed = [
-        f"{key}={_digits(parameters[key])}{one.unit.removeprefix('-')}"
-        for key, one in pulse_parameters(base).items()
-        if parameters.get(key, one.default) != one.default
-    ]
+    shape = _KINDS[base].make(**parameters)
+    changed = []
+    for key, quantity in pulse_parameters(base).items():
+        if parameters.get(key, quantity.default) != quantity.default:
+            changed.append(f"{key}={_digits(parameters[key])}{quantity.unit.removeprefix('-')}")
     if changed:
-        made = replace(made, name=f"{base}({','.join(changed)})")
-    return made.mirrored() if sign else made
+        shape = replace(shape, name=f"{base}({','.join(changed)})")
+    return shape.mirrored() if sign else shape

@@ -140,13 +140,13 @@ class SampledPulse(AbstractPulse):
         InvalidArgumentError
             If the file cannot be read or does not hold a pulse: with the line, what was found and what is allowed.
         """
-        own = {} if period is None else {"period": positive("period", period, "-")}
+        stated_period = {} if period is None else {"period": positive("period", period, "-")}
         layout = {"acceleration": acceleration, "time": time, "skip": skip, "delimiter": delimiter, "decimal": decimal}
         file = read_pulse_file(path, MAX_SAMPLES, **layout)
         try:
-            return cls(**file.arguments | own)
+            return cls(**file.arguments | stated_period)
         except InvalidArgumentError as error:
-            raise error if error.parameter in own else file.error(error) from None
+            raise error if error.parameter in stated_period else file.error(error) from None
 
     @cached_property
     def digest(self) -> str:

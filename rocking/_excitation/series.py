@@ -1,4 +1,4 @@
-"""What the compiled solver needs to evaluate an excitation and to expand it in powers of time."""
+"""Coefficients by which the compiled solver evaluates an excitation and expands it in powers of time."""
 
 import math
 from abc import ABC
@@ -31,5 +31,5 @@ class ExcitationSeries(ABC):
 
     @property
     def has_exact_arcs(self) -> bool:
-        """Whether the slender block (3.1) has exact arcs (3.4) under it at all frequencies."""
+        """True if the slender block (3.1) has exact arcs (3.4) under it at all frequencies."""
         return self.least_arc_frequency == 0.0

@@ -66,16 +66,17 @@ class AbstractPulse(AbstractMotion):
     def __post_init__(self) -> None:
         self._check_window()
         start, end = self.start, self.end
-        found = self._stationary_phases(start, end)
-        given = checked_numbers("stationary", self.stationary, unit="rad")
-        if given and not (len(given) == len(found) and np.allclose(given, found, rtol=0.0, atol=1e-10 * (end - start))):
-            raise InvalidArgumentError(
-                "stationary", given, f"(), or all phases inside where f' changes its sign: {found}"
-            )
-        if len(found) >= MAX_PIECES:
-            raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
-        vars(self)["stationary"] = given or found
-        peak = peak_amplitude(self.shape, start, end, found)
+        turns = self._stationary_phases(start, end)
+        stationary = checked_numbers("stationary", self.stationary, unit="rad")
+        if stationary:
+            tolerance = 1e-10 * (end - start)
+            if len(stationary) != len(turns) or not np.allclose(stationary, turns, rtol=0.0, atol=tolerance):
+                allowed = f"(), or all phases inside where f' changes its sign: {turns}"
+                raise InvalidArgumentError("stationary", stationary, allowed)
+        if len(turns) >= MAX_PIECES:
+            raise InvalidArgumentError("stationary", turns, f"fewer than {MAX_PIECES} phases: a shorter window")
+        vars(self)["stationary"] = stationary or turns
+        peak = peak_amplitude(self.shape, start, end, turns)
         if not abs(peak - 1.0) <= PEAK_TOLERANCE:
             raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
 
@@ -104,7 +105,7 @@ class AbstractPulse(AbstractMotion):
 
     @abstractmethod
     def mirrored(self) -> AbstractPulse:
-        """The pulse -f(phi)."""
+        """Return the pulse -f(phi)."""
 
     @property
     @abstractmethod
@@ -113,12 +114,13 @@ class AbstractPulse(AbstractMotion):
 
     @abstractmethod
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
-        """The phases strictly inside the window at which f' changes its sign [rad]."""
+        """Return the phases strictly inside the window at which f' changes its sign [rad]."""
 
     def acceleration(self, phi: ArrayLike) -> Array:
         """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
         phi = float_array("phi", phi, unit="rad")
-        return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)
+        inside = (phi >= self.start) & (phi <= self.end)
+        return np.where(inside, self.shape(np.clip(phi, self.start, self.end)), 0.0)
 
     @cached_property
     def samples(self) -> tuple[Array, Array] | None:
@@ -133,19 +135,19 @@ class AbstractPulse(AbstractMotion):
 
 
 def checked_number(parameter: str, value: ArrayLike, *, low: float = -MAX_MAGNITUDE, unit: str = "-") -> float:
-    """A number from `low` to `MAX_MAGNITUDE`, checked."""
+    """Return a number from `low` to `MAX_MAGNITUDE`, checked."""
     return number(parameter, value, low, MAX_MAGNITUDE, unit=unit)
 
 
 def checked_window(start: ArrayLike, end: ArrayLike) -> tuple[float, float]:
-    """The ends of a window [rad], checked."""
+    """Return the ends of a window [rad], checked."""
     first, last = checked_number("start", start, unit="rad"), checked_number("end", end, unit="rad")
     in_range("end", last, first, MAX_MAGNITUDE, closed="right", unit="rad")
     return first, last
 
 
 def checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple[float, ...]:
-    """Numbers within +-`MAX_MAGNITUDE`, checked."""
+    """Return numbers within +-`MAX_MAGNITUDE`, checked."""
     array = in_range(parameter, values, -MAX_MAGNITUDE, MAX_MAGNITUDE, unit=unit)
     if array.ndim != 1:
         raise InvalidArgumentError(parameter, values, "a sequence of numbers")
@@ -153,10 +155,10 @@ def checked_numbers(parameter: str, values: ArrayLike, unit: str = "-") -> tuple
 
 
 def peak_amplitude(shape: Callable[[Array], Array], start: float, end: float, turns: tuple[float, ...]) -> float:
-    """max |f| on the window [-]."""
+    """Return max |f| on the window [-]."""
     return float(np.max(np.abs(shape(np.array([start, *turns, end])))))
 
 
 def mirrored_name(name: str) -> str:
-    """The name of the mirrored pulse: with a leading minus, or without it."""
+    """Return the name of the mirrored pulse: with a leading minus, or without it."""
     return name.removeprefix("-") if name.startswith("-") else "-" + name

@@ -46,7 +46,7 @@ class SinusoidalPulse(AbstractPulse):
 
     @classmethod
     def of_unit_peak(cls, name: str, start: float, end: float, terms: Terms) -> SinusoidalPulse:
-        """The sum of `terms` over its largest absolute value on the window; arguments and errors as for the class."""
+        """Divide the sum of `terms` by its largest absolute value on the window; arguments, errors as for the class."""
         checked = _checked_terms(terms)
         turns = stationary_phases_of_sinusoids(checked, *checked_window(start, end))
         peak = peak_amplitude(partial(sum_of_sinusoids, checked), start, end, turns)
@@ -81,16 +81,16 @@ def _checked_terms(terms: Terms) -> Terms:
 
 
 def sum_of_sinusoids(terms: Terms, phi: ArrayLike) -> Array:
-    """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
+    """Return the sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
     phi = float_array("phi", phi, unit="rad")
-    found = np.zeros(phi.shape)
+    total = np.zeros(phi.shape)
     for c, w, d in terms:
-        found += c * np.cos(w * phi + d)
-    return found
+        total += c * np.cos(w * phi + d)
+    return total
 
 
 def stationary_phases_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:
-    """The phases strictly inside the window at which the slope of a sum of sinusoids changes its sign [rad]."""
+    """Return the phases strictly inside the window at which the slope of a sum of sinusoids changes its sign [rad]."""
     c, w, d = np.array(terms).T
 
     def slope(phi: Array) -> tuple[Array, Array]:

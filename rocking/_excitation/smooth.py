@@ -73,7 +73,7 @@ class SmoothPulse(AbstractPulse):
 
     @abstractmethod
     def curve(self, phi: Array) -> Array:
-        """The shape in any unit at phases within the window, float array (n,) [rad]; of the same shape."""
+        """Evaluate the shape in any unit at phases within the window, float array (n,) [rad]; of the same shape."""
 
     def __post_init__(self) -> None:
         self._check_window()
@@ -93,9 +93,9 @@ class SmoothPulse(AbstractPulse):
         return np.asarray(self.curve(float_array("phi", phi, unit="rad")) / self.peak)
 
     def mirrored(self) -> SmoothPulse:
-        made = copy.copy(self)
-        made._set(name=mirrored_name(self.name), peak=-self.peak, polynomials=self.polynomials.times(-1.0))
-        return made
+        mirrored = copy.copy(self)
+        mirrored._set(name=mirrored_name(self.name), peak=-self.peak, polynomials=self.polynomials.times(-1.0))
+        return mirrored
 
     @property
     def series(self) -> PolynomialSeries:

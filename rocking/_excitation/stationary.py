@@ -19,7 +19,7 @@ Slope = Callable[[Array], tuple[Array, Array]]  # from phases (n,) the function 
 def sign_changes(
     slope: Slope, bound: float, second_bound: float, start: float, end: float, parts: int = 1
 ) -> tuple[float, ...]:
-    """The phases strictly inside the window at which `slope` changes sign, to the last bit.
+    """Search the phases strictly inside the window at which `slope` changes sign, to the last bit.
 
     `slope` is smooth inside each of `parts` equal parts of the window, a power of two; `bound` and `second_bound`, M,
     are bounds of the slope and of its second derivative. On an interval of length l about m a function v has no zero if
@@ -52,7 +52,7 @@ def sign_changes(
         middle = 0.5 * (left + right)
         beyond = (slope(middle)[0] > 0.0) == rises
         left, right = np.where(beyond, left, middle), np.where(beyond, middle, right)
-    found = np.where(np.abs(slope(left)[0]) < np.abs(slope(right)[0]), left, right)
+    phases = np.where(np.abs(slope(left)[0]) < np.abs(slope(right)[0]), left, right)
     # otherwise an end of the window displaced by rounding
-    inside = (found - start > 1e-12 * length) & (end - found > 1e-12 * length)
-    return tuple(found[inside].tolist())
+    inside = (phases - start > 1e-12 * length) & (end - phases > 1e-12 * length)
+    return tuple(phases[inside].tolist())

@@ -43,7 +43,7 @@ class WaveletSeries(ExcitationSeries):
         return c0 + h2 / half, 3.0 * h3 / half - half * c1, h2, h3
 
     def growth_rate(self, order: int) -> float:
-        """The smallest r of 1/rad with |d^n f/dphi^n| <= r^n, n = `order`, by the inequality of Cramer.
+        """Return the smallest r of 1/rad with |d^n f/dphi^n| <= r^n, n = `order`, by the inequality of Cramer.
 
         It is |d^n/dx^n exp(-x^2)| <= 1.0865 sqrt(2^n n!).
         """

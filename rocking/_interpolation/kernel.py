@@ -66,10 +66,10 @@ class Found(NamedTuple):
 
     @classmethod
     def zeros(cls, size: int) -> Found:
-        """Responses of some points before they are filled: without uplift, as the codes are 0."""
-        known, from_cube, exceeded = np.zeros((3, size), np.bool_)
+        """Return responses of some points before they are filled: without uplift, as the codes are 0."""
+        determined, from_cube, exceeded = np.zeros((3, size), np.bool_)
         peak, bound = np.zeros((2, size))
-        return cls(known, from_cube, peak, np.zeros(size, np.int8), np.zeros(size, np.int32), exceeded, bound)
+        return cls(determined, from_cube, peak, np.zeros(size, np.int8), np.zeros(size, np.int32), exceeded, bound)
 
 
 @entry
@@ -79,23 +79,23 @@ def prepare(
     levels: FloatArray,
     groups: FloatArray,
     present: FloatArray,
-    found: Found,
+    responses: Found,
 ) -> int:
-    """Find the points without uplift, and the slices from which points are interpolated; the number of the former.
+    """Mark points without uplift, and slices from which points are interpolated; return the number without uplift.
 
     `slenderness`, `restitution` (points,): of the points [-]. `levels` (n,): the restitutions of the slices [-],
     ascending. `groups` (points,): 2 k for points on slice k, 2 k + 1 for those between it and the next one, -1 outside
     of the slices. `present` (2 n + 1,): set to True for the groups of the points; the last element if some are outside
-    of the slices. `found`: responses of the points, all 0.
+    of the slices. `responses`: of the points, all 0.
     """
-    known = 0
+    without_uplift = 0
     for k in range(len(restitution)):
         groups[k] = _group_of(levels, restitution[k])
         present[groups[k]] = True
         if slenderness[k] >= 1.0:
-            found.known[k] = True
-            known += 1
-    return known
+            responses.known[k] = True
+            without_uplift += 1
+    return without_uplift
 
 
 @entry
@@ -114,21 +114,20 @@ def interpolate_many(
     tolerance: float,
     safety: float,
     solver_error: float,
-    found: Found,
+    responses: Found,
 ) -> int:
-    """Fill `found` where some slices determine the response within the tolerance; the number of these points.
+    """Fill `responses` where some slices determine the response within the tolerance; return the number of these.
 
-    Given: points, and the nodes around them. Decided: whether all cells around a point are of one kind, whether the
-    errors of the formulas that are used were measured, and whether the bound of the error meets the tolerance; all
-    other points are left open, for the solver.
+    A point is filled if all cells around it are of one kind, the errors of the formulas that are used were measured,
+    and the bound of the error meets the tolerance. All other points are left to the solver.
 
     `slenderness`, `frequency_ratio`, `restitution`, `alpha` (points,) [-, -, -, rad]; `groups` (points,): of `prepare`;
     `group`: whose points are interpolated here; `mesh`, `axis`: nodes and angles of the slices; `slices`: ascending,
     beyond the number of `levels` they are not read; `levels` (slices,): their restitutions, one for points on a slice
     [-]; `lower`: the slice at or below the points; `tolerance`: largest error bound [-], which is `safety` times the
-    sum of the measured errors plus `solver_error` [-]; `found`: responses of all points.
+    sum of the measured errors plus `solver_error` [-]; `responses`: of all points.
     """
-    given = 0
+    interpolated = 0
     for k in range(len(slenderness)):
         if groups[k] != group:
             continue
@@ -139,35 +138,35 @@ def interpolate_many(
         first, count = axis.windows[a, 0], axis.windows[a, 1]
         by_angle = _level_weights(axis.squares, first, count, angle * angle)
         by_level = _level_weights(levels, 0, len(levels), restitution[k])
-        place = first, count, i, j
-        kind, error = _judge(slices, len(levels), lower, (a >> 1) - first, place, by_angle, by_level)
+        window = first, count, i, j
+        kind, error = _judge(slices, len(levels), lower, (a >> 1) - first, window, by_angle, by_level)
         if kind == NO_STENCIL or np.isnan(error):
             continue
         if kind == OVERTURNS:  # in the same way at all nodes: nothing is interpolated
-            found.peak_rotation[k] = found.error_bound[k] = np.nan
-            found.outcome[k] = slices[0][first, i, j].outcome
-            found.exceeded_alpha[k] = True
+            responses.peak_rotation[k] = responses.error_bound[k] = np.nan
+            responses.outcome[k] = slices[0][first, i, j].outcome
+            responses.exceeded_alpha[k] = True
         else:
             bound = safety * error + solver_error
             if bound > tolerance:
                 continue
             by_row, by_column = lagrange_weights(mesh.rows, i - 1, s), lagrange_weights(mesh.logs, j - 1, np.log(w))
-            peak = _peak(slices, len(levels), place, kind == SQUARED, (by_angle, by_level, by_row, by_column))
+            peak = _peak(slices, len(levels), window, kind == SQUARED, (by_angle, by_level, by_row, by_column))
             # a block that survives passes alpha if and only if its peak does: unknown for a peak within its bound of it
             if abs(peak - 1.0) <= bound:
                 continue
-            found.peak_rotation[k], found.error_bound[k] = max(peak, 0.0), bound
-            found.outcome[k] = _RECOVERS
-            found.exceeded_alpha[k] = peak > 1.0
-        found.impacts[k] = _impacts(slices, len(levels), place)
-        found.known[k] = found.from_cube[k] = True
-        given += 1
-    return given
+            responses.peak_rotation[k], responses.error_bound[k] = max(peak, 0.0), bound
+            responses.outcome[k] = _RECOVERS
+            responses.exceeded_alpha[k] = peak > 1.0
+        responses.impacts[k] = _impacts(slices, len(levels), window)
+        responses.known[k] = responses.from_cube[k] = True
+        interpolated += 1
+    return interpolated
 
 
 @kernel
 def _group_of(levels: FloatArray, x: float) -> int:
-    """2 k for a value on level k, 2 k + 1 between it and the next one, -1 outside of the levels."""
+    """Return 2 k for a value on level k, 2 k + 1 between it and the next one, -1 outside of the levels."""
     group = -1
     for k in range(len(levels)):
         group += (x >= levels[k]) + (x > levels[k])
@@ -176,7 +175,7 @@ def _group_of(levels: FloatArray, x: float) -> int:
 
 @kernel
 def _level_weights(levels: FloatArray, first: int, count: int, x: float) -> Weights:
-    """Lagrange weights at x of `count` levels from `first` on, 0 for those above."""
+    """Return the Lagrange weights at x of `count` levels from `first` on, 0 for those above."""
     if count == 1:
         return 1.0, 0.0, 0.0, 0.0
     return (
@@ -193,16 +192,18 @@ def _judge(
     size: int,
     lower: int,
     below: int,
-    place: tuple[int, int, int, int],
+    window: tuple[int, int, int, int],
     by_angle: Weights,
     by_level: Weights,
 ) -> tuple[int, float]:
-    """What is interpolated between the angles of some cells, and the sum of the errors that were measured in them [-].
+    """Decide what is interpolated between the angles of some cells, and sum the errors measured in them [-].
+
+    `window`: first angle, number of angles, and row and column of the cells.
 
     `NO_STENCIL` if the cells differ, one has no stencil, or the error between the angles is not known; `OVERTURNS` if
     all blocks overturn in the same way; `SQUARED` or `PEAK` as `_form_between_angles`, `PEAK` on one angle.
     """
-    first, count, i, j = place
+    first, count, i, j = window
     error = 0.0
     if count > 1:
         # the error between the two angles beside the point, measured when the cubes were made
@@ -225,26 +226,26 @@ def _judge(
         return OVERTURNS, error
     if count == 1:
         return PEAK, error
-    return _form_between_angles(slices, size, lower, place), error
+    return _form_between_angles(slices, size, lower, window), error
 
 
 @kernel
-def _form_between_angles(slices: FourSlices, size: int, lower: int, place: tuple[int, int, int, int]) -> int:
-    """`SQUARED` or `PEAK`: what was interpolated between the angles when the error between them was measured.
+def _form_between_angles(slices: FourSlices, size: int, lower: int, window: tuple[int, int, int, int]) -> int:
+    """Return `SQUARED` or `PEAK`: what was interpolated between the angles when the error between them was measured.
 
     It was measured on the slice at or below the point and, between slices, on the one above. `NO_STENCIL` if these two
     differ: no error is known of either formula.
     """
-    form: int = _form_of_slice(slices[lower], place)
-    if size > 1 and _form_of_slice(slices[lower + 1], place) != form:
+    form: int = _form_of_slice(slices[lower], window)
+    if size > 1 and _form_of_slice(slices[lower + 1], window) != form:
         return NO_STENCIL
     return form
 
 
 @kernel
-def _form_of_slice(nodes: Nodes, place: tuple[int, int, int, int]) -> int:
-    """`SQUARED` if a cell has it on all angles of a slice, else `PEAK`."""
-    first, count, i, j = place
+def _form_of_slice(nodes: Nodes, window: tuple[int, int, int, int]) -> int:
+    """Return `SQUARED` if a cell has it on all angles of a slice, else `PEAK`."""
+    first, count, i, j = window
     for a in range(first, first + count):
         if nodes[a, i, j].stencil != SQUARED:
             return PEAK
@@ -255,16 +256,16 @@ def _form_of_slice(nodes: Nodes, place: tuple[int, int, int, int]) -> int:
 def _peak(
     slices: FourSlices,
     size: int,
-    place: tuple[int, int, int, int],
+    window: tuple[int, int, int, int],
     squared: bool,
     weights: tuple[Weights, Weights, Weights, Weights],
 ) -> float:
-    """The interpolated peak [-]; `squared`: (1 - peak)^2 is interpolated between the angles.
+    """Return the interpolated peak [-]; `squared`: (1 - peak)^2 is interpolated between the angles.
 
     Each step uses the formula with which its error was measured: between restitutions (1 - peak)^2 where all slices of
     an angle have it, between angles that of `_form_between_angles`.
     """
-    first, count, i, j = place
+    first, count, i, j = window
     by_angle, by_level, by_row, by_column = weights
     total = 0.0
     for a in range(count):
@@ -285,9 +286,9 @@ def _peak(
 
 
 @kernel
-def _impacts(slices: FourSlices, size: int, place: tuple[int, int, int, int]) -> int:
-    """The number of impacts where it is certain in all cells and the same, else `UNKNOWN_IMPACTS`."""
-    first, count, i, j = place
+def _impacts(slices: FourSlices, size: int, window: tuple[int, int, int, int]) -> int:
+    """Return the number of impacts where it is certain in all cells and the same, else `UNKNOWN_IMPACTS`."""
+    first, count, i, j = window
     impacts = slices[0][first, i, j].impacts
     for a in range(first, first + count):
         for e in range(size):
@@ -299,6 +300,6 @@ def _impacts(slices: FourSlices, size: int, place: tuple[int, int, int, int]) ->
 
 @kernel
 def _peak_of(value: float) -> float:
-    """The peak from an interpolated (1 - peak)^2."""
+    """Return the peak from an interpolated (1 - peak)^2."""
     root: float = np.sqrt(max(value, 0.0))
     return 1.0 - root

@@ -1,4 +1,4 @@
-"""Slices of restitution or slenderness angle: from which of them a value, or the interval above one, is interpolated.
+"""Choice of the slices of restitution or slenderness angle from which a value or an interval is interpolated.
 
 Nothing is compiled here: the workflow plans its jobs with it.
 """
@@ -12,7 +12,7 @@ STENCIL_SIZE = 4  # nodes of a stencil in one direction, and slices of a window:
 
 
 def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Index of the slice at or below each value, -1 outside of the slices; and whether the value is on that slice."""
+    """Return the index of the slice at or below each value, -1 outside, and whether the value is on that slice."""
     value = np.asarray(value, dtype=np.float64)
     below = np.searchsorted(slices, value, side="right") - 1
     if not slices.size:
@@ -22,8 +22,9 @@ def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDAr
 
 
 def slice_window(count: int, lower: int) -> tuple[int, int]:
-    """First and number of the slices from which the interval above slice `lower`, 0 to `count` - 2, is interpolated.
+    """Return the first and number of the slices from which the interval above a slice is interpolated.
 
+    `count`: number of all slices; `lower`: the slice below the interval, 0 to `count` - 2.
     The two slices below and the two above the interval; at the ends the four outermost; all if there are fewer.
     """
     size = min(count, STENCIL_SIZE)
@@ -31,9 +32,12 @@ def slice_window(count: int, lower: int) -> tuple[int, int]:
 
 
 def windows_of(count: int, first: int, last: int) -> tuple[int, int]:
-    """First slice, and the one after the last, from which the intervals above slices `first` to `last` - 1 are made.
+    """Return the first and the end of the slices from which the intervals above `first` to `last` - 1 are made.
 
     The last slice of all has no interval above it.
     """
-    windows = [slice_window(count, k) for k in range(first, min(last, count - 1))]
-    return min([first, *(start for start, _ in windows)]), max([last, *(start + size for start, size in windows)])
+    start, end = first, last
+    for k in range(first, min(last, count - 1)):
+        window_start, size = slice_window(count, k)
+        start, end = min(start, window_start), max(end, window_start + size)
+    return start, end

@@ -35,15 +35,15 @@ class Mesh(NamedTuple):
 
     @classmethod
     def of(cls, slenderness: Array, frequency_ratio: Array) -> Mesh:
-        """The mesh of the axes of a cube, of at least four nodes each."""
+        """Return the mesh of the axes of a cube, of at least four nodes each."""
         shape = slenderness.size, frequency_ratio.size
         if min(shape) < STENCIL_SIZE:
             raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL_SIZE} nodes")
         return cls(contiguous_array(slenderness), contiguous_array(frequency_ratio), np.log(frequency_ratio))
 
-    def within(self, cells: tuple[NDArray[np.intp], ...], place: tuple[float, float]) -> tuple[Array, Array]:
-        """Row and column coordinates of a point, given by its fractions [0, 1] of a cell, in each of several cells."""
-        (i, j), (up, along) = cells, place
+    def within(self, cells: tuple[NDArray[np.intp], ...], fractions: tuple[float, float]) -> tuple[Array, Array]:
+        """Return row and column coordinates of the point at these fractions [0, 1] of each of several cells."""
+        (i, j), (up, along) = cells, fractions
         x, y = self.rows, self.logs
         return x[i] + up * (x[i + 1] - x[i]), y[j] + along * (y[j + 1] - y[j])
 
@@ -61,26 +61,29 @@ class AngleAxis(NamedTuple):
 
     @classmethod
     def of(cls, angles: Array) -> AngleAxis:
-        """The axis of some ascending angles [rad]."""
+        """Return the axis of some ascending angles [rad]."""
         size = angles.size
-        windows = [slice_window(size, k // 2) if k % 2 else (k // 2, 1) for k in range(2 * size - 1)]
+        windows = []
+        for k in range(size - 1):
+            windows += [(k, 1), slice_window(size, k)]
+        windows.append((size - 1, 1))
         return cls(contiguous_array(angles), angles**2, np.array(windows, dtype=np.int64))
 
     def needed(self, alpha: Array) -> set[int]:
-        """Indices of the angles from which points at some angles [rad] are interpolated."""
+        """Return the indices of the angles from which points at some angles [rad] are interpolated."""
         low, high = alpha.min(), alpha.max()
-        found: set[int] = set()
+        indices: set[int] = set()
         for angle in (low,) if low == high else np.unique(alpha):
             if self.angles[0] <= angle <= self.angles[-1]:
                 k = int(self.angles.searchsorted(angle, "right")) - 1
                 first, count = self.windows[2 * k + bool(self.angles[k] != angle)].tolist()
-                found.update(range(first, first + count))
-        return found
+                indices.update(range(first, first + count))
+        return indices
 
 
 @kernel
 def cell_of(nodes: FloatArray, value: float) -> int:
-    """Cell of ascending nodes that contains a value; the last cell includes its end; -1 outside of the nodes."""
+    """Return the cell of ascending nodes that contains a value, -1 outside; the last cell includes its end."""
     low, high = 0, len(nodes) - 1
     if not nodes[low] <= value <= nodes[high]:
         return -1
@@ -95,7 +98,7 @@ def cell_of(nodes: FloatArray, value: float) -> int:
 
 @jitable
 def lagrange_weight(slices: FloatArray, first: int, count: int, k: int, x: float) -> float:
-    """Lagrange weight at x of the k-th of `count` slices from `first` on; 0 from k = `count` on."""
+    """Return the Lagrange weight at x of the k-th of `count` slices from `first` on; 0 from k = `count` on."""
     weight = 1.0 if k < count else 0.0
     for m in range(count):
         if m != k and k < count:
@@ -105,7 +108,7 @@ def lagrange_weight(slices: FloatArray, first: int, count: int, k: int, x: float
 
 @kernel
 def lagrange_weights(nodes: FloatArray, first: int, x: float) -> Weights:
-    """Lagrange weights at x of the four nodes from `first` on."""
+    """Return the Lagrange weights at x of the four nodes from `first` on."""
     x0, x1, x2, x3 = nodes[first], nodes[first + 1], nodes[first + 2], nodes[first + 3]
     d0, d1, d2, d3 = x - x0, x - x1, x - x2, x - x3
     return (
@@ -150,6 +153,6 @@ def interpolate_cells(
 
 
 def interpolated_cells(valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Cells (n - 1, m - 1) whose 4 x 4 nodes are all valid; `valid` (n, m), n and m >= 4."""
+    """Return the cells (n - 1, m - 1) whose 4 x 4 nodes are all valid; `valid` (n, m), n and m >= 4."""
     rows = valid[:, :-3] & valid[:, 1:-2] & valid[:, 2:-1] & valid[:, 3:]
     return np.pad(rows[:-3] & rows[1:-2] & rows[2:-1] & rows[3:], 1)

@@ -36,7 +36,7 @@ def body_outcomes(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """The response of bodies (bodies,) to every record and its mirror image at every level.
+    """Solve the response of bodies (bodies,) to every record and its mirror image at every level.
 
     The arguments are those of `rocking.fragility`, without measures that refer to one slenderness angle. The result is
     that of `rocking.suites.outcomes.suite_outcomes`, with the mirror image of each record after it, and with other
@@ -47,47 +47,56 @@ def body_outcomes(
         raise InvalidArgumentError(
             "measure", measure, f"{', '.join(BODY_MEASURES)} for a body with two different edges"
         )
-    motions = [one for record in checked_records(records) for one in (record, record.mirrored())]
+    motions = []
+    for record in checked_records(records):
+        motions += [record, record.mirrored()]
     levels = checked_levels(intensity, chosen)
     spread = spread_restitution(body, restitution)
     eta = None if isinstance(spread, str) and spread == "momentum" else np.array(RESTITUTION.number(spread))
-    column = body.changed(
-        **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
-    )
+    columns = {name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
+    column = body.changed(**columns)
     shape = (*body.shape, levels.size, len(motions))
     fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS} | {"scale": np.empty(shape)}
     for k, motion in enumerate(motions):
-        own = (
-            motion.peak_acceleration / column.uplift_acceleration
-            if measure == "pga_ratio"
-            else getattr(motion, {"pga": "peak_acceleration", "pgv": "peak_velocity"}[measure])
-        )
-        scale = np.broadcast_to(levels / own, shape[:2])
+        recorded: Scalar | Array
+        if measure == "pga":
+            recorded = motion.peak_acceleration
+        elif measure == "pgv":
+            recorded = motion.peak_velocity
+        else:
+            recorded = motion.peak_acceleration / column.uplift_acceleration
+        scale = np.broadcast_to(levels / recorded, shape[:2])
         check_levels(levels, motion, scale, np.broadcast_to(body.gravity, body.shape).tolist())
         problem = Problem(column, motion, scale, np.ones(()), eta)
-        found = respond(problem, threads=threads, stop=stop)
+        response = respond(problem, threads=threads, stop=stop)
         for name, values in fields.items():
-            values[:, :, k] = scale if name == "scale" else getattr(found, name)
+            values[:, :, k] = scale if name == "scale" else getattr(response, name)
     return labelled_outcomes(fields, levels, chosen, motions, _properties(body, eta))
 
 
 def _properties(body: RigidBody, eta: Array | None) -> dict[str, tuple[NDArray[Any], str, str]]:
-    """Coordinates of the bodies: values (bodies,), unit and meaning."""
-    found: dict[str, tuple[Any, str, str]] = {
+    """Return the coordinates of the bodies: values (bodies,), unit and meaning."""
+    properties: dict[str, tuple[Any, str, str]] = {
         "width": (body.width, "m", "distance of the edges"),
         "height": (body.top_height, "m", "height of the body"),
         "uplift_acceleration": (body.uplift_acceleration, "m s-2", "ground acceleration of uplift, of the weaker edge"),
         "gravity": (body.gravity, "m s-2", "acceleration of gravity"),
     }
     for side, edge in (("right", body.right), ("left", body.left)):
-        own = np.maximum(edge.restitution, 0.0) if eta is None else eta
-        found |= {
+        restitution = np.maximum(edge.restitution, 0.0) if eta is None else eta
+        properties |= {
             f"alpha_{side}": (edge.alpha, "rad", f"slenderness angle of the {side} edge"),
             f"frequency_parameter_{side}": (
                 edge.frequency_parameter,
                 "rad s-1",
                 f"frequency parameter p of the {side} edge",
             ),
-            f"restitution_{side}": (own, "1", f"coefficient of restitution of impacts that leave the {side} edge"),
+            f"restitution_{side}": (
+                restitution,
+                "1",
+                f"coefficient of restitution of impacts that leave the {side} edge",
+            ),
         }
-    return {name: (np.broadcast_to(values, body.shape), unit, text) for name, (values, unit, text) in found.items()}
+    return {
+        name: (np.broadcast_to(values, body.shape), unit, text) for name, (values, unit, text) in properties.items()
+    }

@@ -14,21 +14,21 @@ MAX_THRESHOLD = 1e3
 
 
 def label(limit: str | float) -> str:
-    """The name of a limit state in results: overturning, alpha, or such as `0.5 alpha`."""
+    """Return the name of a limit state in results: overturning, alpha, or such as `0.5 alpha`."""
     return limit if isinstance(limit, str) else f"{limit:g} alpha"
 
 
 def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
-    """The limit states, all different, thresholds as floats."""
-    given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
-    found: list[str | float] = []
-    for limit in given:
-        if isinstance(limit, str):
-            if limit not in ("overturning", "alpha"):
-                raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
-            found.append(limit)
-        else:
-            found.append(number("demand", limit, 0.0, MAX_THRESHOLD, closed="right"))  # type: ignore[arg-type]
-    if not found or len({label(limit) for limit in found}) != len(found):
+    """Return the limit states as a list, thresholds as floats; raise if two of them are equal."""
+    if isinstance(demand, str) or np.ndim(demand) == 0:  # type: ignore[arg-type]
+        limits: list[str | float] = [demand]  # type: ignore[list-item]
+    else:
+        limits = [*demand]  # type: ignore[misc]
+    for k, limit in enumerate(limits):
+        if not isinstance(limit, str):
+            limits[k] = number("demand", limit, 0.0, MAX_THRESHOLD, closed="right")
+        elif limit not in ("overturning", "alpha"):
+            raise InvalidArgumentError("demand", limit, "overturning, alpha, or a threshold of max |theta|/alpha")
+    if not limits or len({label(limit) for limit in limits}) != len(limits):
         raise InvalidArgumentError("demand", demand, "one or more different limit states")
-    return found
+    return limits

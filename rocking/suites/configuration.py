@@ -67,26 +67,35 @@ class RecordFiles:
     baseline_order: int | None
 
     def paths(self) -> list[Path]:
-        """The files, at least one, in the order of their names."""
-        found = sorted(path for path in self.folder.glob(self.pattern) if path.is_file()) if self.pattern else []
-        if not found:
+        """Return the files, at least one, in the order of their names."""
+        paths = []
+        if self.pattern:
+            paths = sorted(path for path in self.folder.glob(self.pattern) if path.is_file())
+        if not paths:
             raise InvalidArgumentError(
                 "records",
                 f"{self.folder}/{self.pattern}",
                 "a folder, relative to the file of the configuration, and a pattern of its files: there is none",
             )
-        return found
+        return paths
 
     def read(self, path: Path) -> Record:
-        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix."""
+        """Read the motion of a file, corrected if an order is given; its name is that of the file without suffix."""
         motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
             read_content("path", path),
             path.name,
             **self.layout,
         )
         corrected = motion.baseline_corrected(order=self.baseline_order)
-        about = path.stem, corrected.source, corrected.remarks
-        return Record(corrected.acceleration, corrected.time_step, "m/s2", *about, vertical=corrected.vertical)
+        return Record(
+            corrected.acceleration,
+            corrected.time_step,
+            "m/s2",
+            name=path.stem,
+            source=corrected.source,
+            remarks=corrected.remarks,
+            vertical=corrected.vertical,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +109,7 @@ class BlockMap(EqualByValue):
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity(EqualByValue):
-    """What `rocking.suites.suite_sensitivity` is asked for."""
+    """Arguments of `rocking.suites.suite_sensitivity`."""
 
     intensity: Array  # levels, ascending, in the unit of the measure
     restitution_step: float  # change of the coefficient of restitution [-]
@@ -122,101 +131,106 @@ class SuiteConfiguration(EqualByValue):
     sensitivity: Sensitivity | None
 
     def motions(self) -> list[Record]:
-        """The motions of all files, in the order of their names."""
+        """Read the motions of all files, in the order of their names."""
         return [self.records.read(path) for path in self.records.paths()]
 
 
-def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfiguration:
+def suite_configuration(configuration: Mapping[str, Any], folder: Path) -> SuiteConfiguration:
     """Check a configuration as described above; `records.folder` is relative to `folder`, that of its file.
 
     Raises `InvalidArgumentError` for the first key that is missing, unknown or has an invalid value; `parameter` is the
     key, such as `map.alpha_deg`.
     """
-    given = _with_defaults(given, DEFAULTS)
-    _keys("suite", given, SuiteConfiguration.__annotations__)
-    measure = one_of("measure", given["measure"], MEASURES)
-    blocks = _blocks(given["blocks"])
-    if given["sensitivity"] is not None and not isinstance(blocks, tuple):
-        raise InvalidArgumentError("sensitivity", given["sensitivity"], "null beside a body with two different edges")
+    values = _with_defaults(configuration, DEFAULTS)
+    _keys("suite", values, SuiteConfiguration.__annotations__)
+    measure = one_of("measure", values["measure"], MEASURES)
+    blocks = _blocks(values["blocks"])
+    if values["sensitivity"] is not None and not isinstance(blocks, tuple):
+        raise InvalidArgumentError("sensitivity", values["sensitivity"], "null beside a body with two different edges")
+    restitution = values["restitution"]
+    if restitution != "momentum":
+        restitution = RESTITUTION.number(restitution)
     return SuiteConfiguration(
-        name=str(given["name"]),
-        records=_record_files(given["records"], folder),
+        name=str(values["name"]),
+        records=_record_files(values["records"], folder),
         blocks=blocks,
-        restitution="momentum" if given["restitution"] == "momentum" else RESTITUTION.number(given["restitution"]),
+        restitution=restitution,
         measure=measure,
-        intensity=_levels("intensity", given["intensity"], logarithmic=True),
-        demand=tuple(check_demands(given["demand"])),
-        confidence=number("confidence", given["confidence"], 0.0, 1.0, closed="neither"),
-        map=None if given["map"] is None else _map(given["map"]),
-        sensitivity=None if given["sensitivity"] is None else _sensitivity(given["sensitivity"]),
+        intensity=_levels("intensity", values["intensity"], logarithmic=True),
+        demand=tuple(check_demands(values["demand"])),
+        confidence=number("confidence", values["confidence"], 0.0, 1.0, closed="neither"),
+        map=None if values["map"] is None else _map(values["map"]),
+        sensitivity=None if values["sensitivity"] is None else _sensitivity(values["sensitivity"]),
     )
 
 
-def _with_defaults(given: Any, defaults: Mapping[str, Any]) -> Any:
-    return {**defaults, **given} if isinstance(given, Mapping) else given
+def _with_defaults(section: Any, defaults: Mapping[str, Any]) -> Any:
+    return {**defaults, **section} if isinstance(section, Mapping) else section
 
 
-def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
+def _keys(name: str, section: Any, keys: Iterable[str]) -> None:
     """Refuse a section with a missing or an unknown key."""
     expected = list(keys)
-    if not isinstance(given, Mapping):
-        raise InvalidArgumentError(section, given, "a mapping with the keys " + ", ".join(expected))
-    if {*given} != {*expected}:
-        wrong = [f"no {key}" for key in expected if key not in given]
-        wrong += [f"unknown {key}" for key in given if key not in expected]
-        raise InvalidArgumentError(section, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
+    if not isinstance(section, Mapping):
+        raise InvalidArgumentError(name, section, "a mapping with the keys " + ", ".join(expected))
+    if {*section} != {*expected}:
+        wrong = [f"no {key}" for key in expected if key not in section]
+        wrong += [f"unknown {key}" for key in section if key not in expected]
+        raise InvalidArgumentError(name, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
 
 
-def _record_files(given: Any, folder: Path) -> RecordFiles:
-    given = _with_defaults(given, LAYOUT | {"baseline_order": None})
-    _keys("records", given, ("folder", "pattern", *LAYOUT, "baseline_order"))
-    layout = {name: given[name] for name in LAYOUT}
+def _record_files(section: Any, folder: Path) -> RecordFiles:
+    values = _with_defaults(section, LAYOUT | {"baseline_order": None})
+    _keys("records", values, ("folder", "pattern", *LAYOUT, "baseline_order"))
+    layout = {name: values[name] for name in LAYOUT}
+    columns = {name: value for name, value in layout.items() if name not in ("vertical", "allow_unusual")}
     try:
-        stated_layout(FORMATS, **{name: layout[name] for name in LAYOUT if name not in ("vertical", "allow_unusual")})
+        stated_layout(FORMATS, **columns)
     except InvalidArgumentError as error:
         raise InvalidArgumentError(f"records.{error.parameter}", error.value, error.allowed) from None
-    return RecordFiles(folder / str(given["folder"]), str(given["pattern"]), layout, given["baseline_order"])
+    return RecordFiles(folder / str(values["folder"]), str(values["pattern"]), layout, values["baseline_order"])
 
 
-def _blocks(given: Any) -> tuple[AbstractBlock, ...] | RigidBody:
-    if not isinstance(given, list) or not given:
-        raise InvalidArgumentError("blocks", given, "a list of bodies, such as their width and height [m]")
-    made = [_block(f"blocks[{place}]", item) for place, item in enumerate(given)]
-    rectangles = tuple(one for one in made if isinstance(one, RectangularBlock))
-    if len(rectangles) == len(made):
+def _blocks(values: Any) -> tuple[AbstractBlock, ...] | RigidBody:
+    if not isinstance(values, list) or not values:
+        raise InvalidArgumentError("blocks", values, "a list of bodies, such as their width and height [m]")
+    bodies = [_block(f"blocks[{index}]", value) for index, value in enumerate(values)]
+    rectangles = tuple(body for body in bodies if isinstance(body, RectangularBlock))
+    if len(rectangles) == len(bodies):
         return rectangles
     from rocking.suites.body_arrays import as_blocks  # noqa: PLC0415  (as below)
 
-    return as_blocks(made)
+    return as_blocks(bodies)
 
 
-def _block(section: str, given: Any) -> AbstractBody:
-    """A body from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
-    if isinstance(given, Mapping) and given.keys() == {"width", "height"}:
-        return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
+def _block(key: str, value: Any) -> AbstractBody:
+    """Return a body from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
+    if isinstance(value, Mapping) and value.keys() == {"width", "height"}:
+        width = positive(f"{key}.width", value["width"], "m")
+        return RectangularBlock(width, positive(f"{key}.height", value["height"], "m"))
     # others need numba, which the rules of a workflow do not
     from rocking._dimensional.block import Block  # noqa: PLC0415
     from rocking._dimensional.body_kinds import body  # noqa: PLC0415
 
     try:
-        made = body(given)
+        solid = body(value)
     except InvalidArgumentError as error:
-        place = section if error.parameter == "body" else f"{section}.{error.parameter}"
-        raise InvalidArgumentError(place, error.value, error.allowed) from None
-    return RectangularBlock(made.width, made.height, made.gravity) if isinstance(made, Block) else made
+        parameter = key if error.parameter == "body" else f"{key}.{error.parameter}"
+        raise InvalidArgumentError(parameter, error.value, error.allowed) from None
+    return RectangularBlock(solid.width, solid.height, solid.gravity) if isinstance(solid, Block) else solid
 
 
-def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
-    """A list of values, or `points` values from `low` to `high`."""
-    if not isinstance(given, Mapping):
-        levels = np.atleast_1d(in_range(parameter, given, 0.0, math.inf, closed="neither"))
+def _levels(parameter: str, values: Any, *, logarithmic: bool) -> Array:
+    """Return levels from a list of values, or from `points` values from `low` to `high`."""
+    if not isinstance(values, Mapping):
+        levels = np.atleast_1d(in_range(parameter, values, 0.0, math.inf, closed="neither"))
         if levels.ndim != 1 or not 1 <= levels.size <= MAX_POINTS or not np.all(np.diff(levels) > 0.0):
-            raise InvalidArgumentError(parameter, given, f"1 to {MAX_POINTS} ascending values")
+            raise InvalidArgumentError(parameter, values, f"1 to {MAX_POINTS} ascending values")
         return levels
-    _keys(parameter, given, ("low", "high", "points"))
-    low = positive(f"{parameter}.low", given["low"], "-")
-    high = number(f"{parameter}.high", given["high"], low, math.inf, closed="neither")
-    points = given["points"]
+    _keys(parameter, values, ("low", "high", "points"))
+    low = positive(f"{parameter}.low", values["low"], "-")
+    high = number(f"{parameter}.high", values["high"], low, math.inf, closed="neither")
+    points = values["points"]
     if type(points) is not int or not 2 <= points <= MAX_POINTS:
         raise InvalidArgumentError(f"{parameter}.points", points, f"an integer from 2 to {MAX_POINTS}")
     # rounded so that the values in files are short, and equal on every machine
@@ -224,19 +238,19 @@ def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:
     return np.array([float(f"{value:.12g}") for value in spaced])
 
 
-def _map(given: Any) -> BlockMap:
-    _keys("map", given, ("intensity", "half_diagonal", "alpha_deg"))
-    angles = _levels("map.alpha_deg", given["alpha_deg"], logarithmic=False)
+def _map(section: Any) -> BlockMap:
+    _keys("map", section, ("intensity", "half_diagonal", "alpha_deg"))
+    angles = _levels("map.alpha_deg", section["alpha_deg"], logarithmic=False)
     in_range("map.alpha_deg", angles, 0.0, 89.0, closed="right", unit="deg")
-    sizes = _levels("map.half_diagonal", given["half_diagonal"], logarithmic=False)
+    sizes = _levels("map.half_diagonal", section["half_diagonal"], logarithmic=False)
     if sizes.size * angles.size > MAX_CELLS:
         raise InvalidArgumentError("map", f"{sizes.size} times {angles.size} points", f"at most {MAX_CELLS} points")
-    return BlockMap(positive("map.intensity", given["intensity"], "-"), sizes, np.radians(angles))
+    return BlockMap(positive("map.intensity", section["intensity"], "-"), sizes, np.radians(angles))
 
 
-def _sensitivity(given: Any) -> Sensitivity:
-    _keys("sensitivity", given, Sensitivity.__annotations__)
+def _sensitivity(section: Any) -> Sensitivity:
+    _keys("sensitivity", section, Sensitivity.__annotations__)
     return Sensitivity(
-        _levels("sensitivity.intensity", given["intensity"], logarithmic=True),
-        number("sensitivity.restitution_step", given["restitution_step"], 0.0, 1.0, closed="right"),
+        _levels("sensitivity.intensity", section["intensity"], logarithmic=True),
+        number("sensitivity.restitution_step", section["restitution_step"], 0.0, 1.0, closed="right"),
     )

@@ -49,7 +49,7 @@ LINKS = {
 
 
 def curve_probability(model: str, intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:
-    """The probability of a fitted curve [-], nan without one; median and dispersion as in `CurveFit`, all broadcast.
+    """Evaluate the probability of a curve [-], nan without one; median and dispersion as in `CurveFit`, all broadcast.
 
     A dispersion of 0 is a step, 1/2 at the median; a negative one a curve that falls.
     """

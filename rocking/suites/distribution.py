@@ -76,30 +76,35 @@ def distribution(
     peak = data["peak_rotation"].where(~overturned, np.inf)
     if rotation is None:
         largest = float(peak.where(np.isfinite(peak), 0.0).max())
-        at = np.linspace(0.0, max(largest, 1.0), ROTATIONS)
+        thresholds = np.linspace(0.0, max(largest, 1.0), ROTATIONS)
     else:
-        at = np.atleast_1d(in_range("rotation", rotation, 0.0, math.inf, closed="left"))
-        if at.ndim != 1 or np.any(np.diff(at) <= 0.0):
+        thresholds = np.atleast_1d(in_range("rotation", rotation, 0.0, math.inf, closed="left"))
+        if thresholds.ndim != 1 or np.any(np.diff(thresholds) <= 0.0):
             raise InvalidArgumentError("rotation", rotation, "one dimension of ascending values")
-    names = [str(one) for one in data[over].values] if over in data.coords else []
-    members = data.sizes[over] // (2 if any(name.endswith(", mirrored") for name in names) else 1)
-    half = math.sqrt(math.log(2.0 / (1.0 - level)) / (2.0 * members))
-    axis = xr.DataArray(at, dims="rotation")
-    found: dict[str, Any] = {}
-    for name, share, meaning in (
-        ("probability", (peak <= axis).mean(over), "share of the members whose peak rotation is at most the rotation"),
-        ("overturned", overturned.mean(over), "share of the members that overturn"),
-    ):
-        ends = binomial_interval(members * share.values, members, level)
-        found[name] = variable(share.dims, share.values, "1", meaning)
-        for end, values in zip(("lower", "upper"), ends, strict=True):
-            text = f"{end} end of the Clopper-Pearson interval of the {name}"
-            found[f"{name}_{end}"] = variable(share.dims, values, "1", text)
-        if name == "probability":
-            for end, sign in (("lower", -1.0), ("upper", 1.0)):
-                text = f"{end} end of the band that contains the whole distribution"
-                found[f"band_{end}"] = variable(share.dims, np.clip(share.values + sign * half, 0.0, 1.0), "1", text)
-    others = {*peak.dims} - {over}
-    kept = {name: value for name, value in data.coords.items() if others.issuperset(value.dims)}
-    rotations = variable("rotation", at, "1", "peak rotation over alpha")
-    return xr.Dataset(found, {**kept, "rotation": rotations}, {"members": members, "confidence": level})
+    members = data.sizes[over]
+    if over in data.coords and any(str(name).endswith(", mirrored") for name in data[over].values):
+        members //= 2
+    rotations = variable("rotation", thresholds, "1", "peak rotation over alpha")
+    not_exceeded = (peak <= xr.DataArray(thresholds, dims="rotation")).mean(over)
+    meaning = "share of the members whose peak rotation is at most the rotation"
+    shares = _with_interval("probability", not_exceeded, meaning, members, level)
+    half_band = math.sqrt(math.log(2.0 / (1.0 - level)) / (2.0 * members))
+    for end, deviation in (("lower", -half_band), ("upper", half_band)):
+        band = np.clip(not_exceeded.values + deviation, 0.0, 1.0)
+        text = f"{end} end of the band that contains the whole distribution"
+        shares[f"band_{end}"] = variable(not_exceeded.dims, band, "1", text)
+    shares |= _with_interval("overturned", overturned.mean(over), "share of the members that overturn", members, level)
+    dims = {*peak.dims} - {over}
+    coordinates = {name: value for name, value in data.coords.items() if dims.issuperset(value.dims)}
+    coordinates["rotation"] = rotations
+    return xr.Dataset(shares, coordinates, {"members": members, "confidence": level})
+
+
+def _with_interval(name: str, share: Any, meaning: str, members: int, confidence: float) -> dict[str, Any]:
+    """Return a share of the members and its Clopper-Pearson interval as variables."""
+    variables = {name: variable(share.dims, share.values, "1", meaning)}
+    ends = binomial_interval(members * share.values, members, confidence)
+    for end, values in zip(("lower", "upper"), ends, strict=True):
+        text = f"{end} end of the Clopper-Pearson interval of the {name}"
+        variables[f"{name}_{end}"] = variable(share.dims, values, "1", text)
+    return variables

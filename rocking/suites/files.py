@@ -37,6 +37,10 @@ def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
     if ending == ".csv":
         write_output(file, csv_text(levels))
         return
-    about = {"measure": fragility.attrs["measure"], "unit": fragility["intensity"].attrs["units"]}
-    tables = {"levels": finite_columns(levels), "curves": finite_columns(curve_table(fragility))}
-    write_output(file, json.dumps({**about, **tables}, allow_nan=False))
+    tables = {
+        "measure": fragility.attrs["measure"],
+        "unit": fragility["intensity"].attrs["units"],
+        "levels": finite_columns(levels),
+        "curves": finite_columns(curve_table(fragility)),
+    }
+    write_output(file, json.dumps(tables, allow_nan=False))

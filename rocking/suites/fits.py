@@ -36,7 +36,7 @@ LARGEST_SLOPE = 1e8  # b at which a fit counts as a step [-]; it is reached only
 
 
 class FitStatus(IntEnum):
-    """Whether the outcomes determine a curve."""
+    """Outcome of a fit: a curve, or why there is none."""
 
     FITTED = 0
     SEPARATED = 1
@@ -46,7 +46,7 @@ class FitStatus(IntEnum):
 
     @property
     def sentence(self) -> str:
-        """What it means."""
+        """Its meaning, as a sentence."""
         return _SENTENCES[self]
 
 
@@ -78,7 +78,7 @@ class CurveFit:
 
 
 def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple[Array, Array]:
-    """Clopper-Pearson intervals of probabilities [-], which cover with the given confidence at least.
+    """Return the Clopper-Pearson intervals of probabilities [-], which cover with the given confidence at least.
 
     `count`: successes, 0 to `trials`, any shape; a fraction where trials succeed in part. `trials`: trials of each, >
     0. `confidence`: [-], (0, 1).
@@ -91,7 +91,7 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
 
 
 def counted(reached: Flags, confidence: float, event: str, signs: int = 1) -> dict[str, tuple[NDArray[Any], str]]:
-    """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
+    """Count the motions, the last axis, that do something: number, fraction and interval, each with its meaning.
 
     `signs` consecutive motions are one record and count as one independent trial of the interval.
     """
@@ -148,7 +148,7 @@ def fit_curve(
 
 
 def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | None:
-    """(a, b) of z = a + b x at the largest likelihood; None if b is not positive there."""
+    """Return (a, b) of z = a + b x at the largest likelihood, None if b is not positive there."""
     from scipy.optimize import minimize  # noqa: PLC0415  # takes longer to load than the package
 
     centre, width = float(x.mean()), float(np.ptp(x))
@@ -165,7 +165,7 @@ def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | N
         weight = fractions * link.curvature(z, link.slope(z)) + (1.0 - fractions) * link.curvature(-z, link.slope(-z))
         return np.asarray((design * weight) @ design.T)
 
-    found = minimize(
+    fit = minimize(
         loss,
         np.array([0.0, 1.0]),
         jac=True,
@@ -173,15 +173,14 @@ def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | N
         method="trust-exact",
         options={"gtol": 1e-10, "maxiter": 500},
     )
-    a, b = (float(value) for value in found.x)
+    a, b = (float(value) for value in fit.x)
     b /= width
-    return (a - b * centre, b) if 0.0 < b < LARGEST_SLOPE and found.fun < _flat_loss(fractions) else None
-
-
-def _flat_loss(fractions: Array) -> float:
-    """The loss of one probability for all levels; no curve that rises need reach it."""
+    # the loss of an equal probability at all levels: the data can be such that every rising curve has a larger one
     mean = float(fractions.mean())
-    return -fractions.size * (mean * math.log(mean) + (1.0 - mean) * math.log1p(-mean))
+    flat_loss = -fractions.size * (mean * math.log(mean) + (1.0 - mean) * math.log1p(-mean))
+    if not 0.0 < b < LARGEST_SLOPE or fit.fun >= flat_loss:
+        return None
+    return a - b * centre, b
 
 
 def _described(
@@ -193,6 +192,7 @@ def _described(
     confidence: float,
     signs: int,
 ) -> CurveFit:
+    """Return a fitted curve with its intervals and measures of fit."""
     a, b = parameters
     z = a + b * x
     fractions, records = outcomes.mean(axis=1), outcomes.shape[1] // signs
@@ -200,16 +200,10 @@ def _described(
     design = np.stack([np.ones_like(x), x])
     median, spread = math.exp(-direction * a / b), 1.0 / b
     median_interval, dispersion_interval = (0.0, math.inf), (0.0, math.inf)
-    covariance = _covariance(
-        design,
-        *(
-            values.reshape(x.size, records, signs).mean(axis=2)
-            for values in (
-                np.where(outcomes, link.curvature(z, up)[:, None], link.curvature(-z, down)[:, None]),
-                np.where(outcomes, up[:, None], -down[:, None]),
-            )
-        ),
-    )
+    curvature = np.where(outcomes, link.curvature(z, up)[:, None], link.curvature(-z, down)[:, None])
+    slope = np.where(outcomes, up[:, None], -down[:, None])
+    by_record = (x.size, records, signs)
+    covariance = _covariance(design, curvature.reshape(by_record).mean(axis=2), slope.reshape(by_record).mean(axis=2))
     if covariance is not None:
         quantile = float(stdtrit(records - 1, 0.5 + 0.5 * confidence))
         of_median = np.array([-1.0 / b, a / b**2])
@@ -236,7 +230,7 @@ def _described(
 
 
 def _covariance(design: Array, curvature: Array, slope: Array) -> Array | None:
-    """Covariance (2, 2) of (a, b) when records are independent and the levels of a record need not be.
+    """Return the covariance (2, 2) of (a, b) when records are independent and the levels of a record need not be.
 
     The jackknife over records with one Newton step for each: the change of (a, b) without record i is the inverse of
     the information of the others times the score of i. `design` (2, levels): 1 and x; `curvature`, `slope` (levels,
@@ -244,16 +238,16 @@ def _covariance(design: Array, curvature: Array, slope: Array) -> Array | None:
     (a, b).
     """
     records = slope.shape[1]
-    own = np.einsum("al,bl,lr->rab", design, design, curvature)
-    others = own.sum(axis=0) - own
-    if records < 2 or not np.all(np.linalg.det(others) > 0.0):
+    information = np.einsum("al,bl,lr->rab", design, design, curvature)
+    without_record = information.sum(axis=0) - information
+    if records < 2 or not np.all(np.linalg.det(without_record) > 0.0):
         return None
-    changes = np.linalg.solve(others, (design @ slope).T[:, :, None])[:, :, 0]
+    changes = np.linalg.solve(without_record, (design @ slope).T[:, :, None])[:, :, 0]
     return np.asarray((records - 1) / records * changes.T @ changes)
 
 
 def _spread_factors(variance: float, confidence: float) -> tuple[float, float]:
-    """Ends of the interval of a spread over its estimate, from the variance of the logarithm of the estimate.
+    """Return the ends of the interval of a spread over its estimate, from the variance of the log of the estimate.
 
     The square of the estimate is taken as that of a normal sample with nu degrees of freedom, chi^2/(nu + 1), with the
     nu whose logarithm has this variance, psi'(nu/2)/4, psi'(x) = 1/x + 1/(2 x^2) (Satterthwaite 1946). Unlike a normal
@@ -271,16 +265,17 @@ def _exp(value: float) -> float:
 
 
 def _log_likelihood(fractions: Array, probabilities: Array, trials: int) -> float:
-    """ln of the likelihood of fractions of outcomes, without binomial coefficients; 0 ln 0 is 0."""
+    """Return ln of the likelihood of fractions of outcomes, without binomial coefficients; 0 ln 0 is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        terms = fractions * np.log(probabilities), (1.0 - fractions) * np.log1p(-probabilities)
-    return trials * float(sum(np.where(np.isnan(term), 0.0, term).sum() for term in terms))
+        reached = fractions * np.log(probabilities)
+        survived = (1.0 - fractions) * np.log1p(-probabilities)
+    return trials * float(np.nansum(reached) + np.nansum(survived))
 
 
 def _free_interval(
     outcomes: Flags, intensity: Array, confidence: float, falling: bool, signs: int
 ) -> tuple[float, float]:
-    """Distribution-free interval of the median, from the binomial intervals of the levels."""
+    """Return the distribution-free interval of the median, from the binomial intervals of the levels."""
     low, high = binomial_interval(outcomes.sum(axis=1) / signs, outcomes.shape[1] // signs, confidence)
     below, above = intensity[high < 0.5], intensity[low > 0.5]
     if falling:

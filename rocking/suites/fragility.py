@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.arrays import Array, Flags
 from rocking._base.errors import number
@@ -25,7 +25,7 @@ from rocking.suites.body_arrays import HasBody, over_bodies
 from rocking.suites.body_outcomes import SIGNS, body_outcomes
 from rocking.suites.checks import check_demands, label
 from rocking.suites.curve import LINKS, curve_probability
-from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
+from rocking.suites.fits import FitStatus, counted, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, checked_records, suite_outcomes
 
@@ -56,7 +56,7 @@ def fragility(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Probability that blocks reach a limit state under a suite of records, at levels of intensity.
+    """Estimate the probability that blocks reach a limit state under a suite of records, at levels of intensity.
 
     Parameters
     ----------
@@ -108,29 +108,29 @@ def fragility(
     if isinstance(blocks, RigidBody) and any(getattr(value, "chunks", None) for value in blocks.labels.values()):
         threads = threads or 1
 
-    def analysed(given: Sequence[AbstractBlock] | AbstractBlock | RigidBody) -> xr.Dataset:
-        if isinstance(given, RigidBody):
-            outcomes, signs = body_outcomes(records, given, intensity, measure, restitution, threads, stop), SIGNS
+    def analyse(bodies: Sequence[AbstractBlock] | AbstractBlock | RigidBody) -> xr.Dataset:
+        if isinstance(bodies, RigidBody):
+            outcomes, signs = body_outcomes(records, bodies, intensity, measure, restitution, threads, stop), SIGNS
         else:
-            suite, signs = check_suite(records, given, intensity, measure, restitution), 1
+            suite, signs = check_suite(records, bodies, intensity, measure, restitution), 1
             outcomes = suite_outcomes(suite, threads=threads, stop=stop)
-        found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence, signs))
-        found.attrs |= {"confidence": confidence}
+        result = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence, signs))
+        result.attrs |= {"confidence": confidence}
         doubts = offset_doubts(checked_records(records)) if MEASURES[measure].scales_amplitude else []
         if doubts:
-            found.attrs["warnings"] = "; ".join(doubts)
-        return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found
+            result.attrs["warnings"] = "; ".join(doubts)
+        return result.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else result
 
     if isinstance(blocks, RigidBody):
-        return over_bodies(analysed, blocks)
-    found = analysed(blocks)
-    return found.isel(block=0) if isinstance(blocks, AbstractBlock) else found
+        return over_bodies(analyse, blocks)
+    result = analyse(blocks)
+    return result.isel(block=0) if isinstance(blocks, AbstractBlock) else result
 
 
 def fragility_of_outcomes(
     outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95, signs: int = 1
 ) -> xr.Dataset:
-    """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
+    """Compute counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 
     `signs`: columns after each other that belong to one record, 2 with its mirror image.
     """
@@ -142,9 +142,11 @@ def fragility_of_outcomes(
     first = np.logical_or.accumulate(reached[:, :, ::order], axis=2)[:, :, ::order]
     survives = np.asarray((first & ~reached).any(axis=2))
     names = outcomes["record"].values.astype(str)
-    named = [["; ".join(names[np.asarray(own)]) for own in of_demand] for of_demand in survives]
+    survivors = np.empty(survives.shape[:2], dtype=object)
+    for index in np.ndindex(survivors.shape):
+        survivors[index] = "; ".join(names[survives[index]])
     by_level, by_model = ("demand", "block", "intensity"), ("demand", "block", "model")
-    found = xr.Dataset(
+    fragility = xr.Dataset(
         {
             "survives_above_first": variable(
                 ("demand", "block", "record"),
@@ -155,7 +157,7 @@ def fragility_of_outcomes(
                 flag_meanings="no yes",
             ),
             "records_surviving_above_first": variable(
-                ("demand", "block"), np.array(named, dtype=str), "", "names of the records with survives_above_first"
+                ("demand", "block"), survivors.astype(str), "", "names of the records with survives_above_first"
             ),
         },
         {
@@ -167,25 +169,21 @@ def fragility_of_outcomes(
     )
     for prefix, outcome, remark in (("", reached, {}), ("first_", first, {"comment": COMPARISON})):
         for name, (values, meaning) in counted(outcome, confidence, "reach the limit state", signs).items():
-            found[prefix + name] = variable(by_level, values, "1", meaning, **remark)
+            fragility[prefix + name] = variable(by_level, values, "1", meaning, **remark)
         fits = _fits(outcome, levels, confidence, falling, signs)
-        found[f"{prefix}fit_status"] = (by_model, _each(fits, "status").astype(np.int8), _STATUS_ATTRIBUTES | remark)
+        status = _values(fits, "status").astype(np.int8)
+        fragility[f"{prefix}fit_status"] = (by_model, status, _STATUS_ATTRIBUTES | remark)
         for name, (unit, meaning) in _MODEL_VARIABLES.items():
-            known = outcomes["intensity"].attrs["units"] if unit == "intensity" else unit
-            about = {"units": known, "long_name": meaning, **remark}
-            found[prefix + name] = (by_model, _each(fits, name), about)
-    curves = [
-        curve_probability(
-            model,
-            levels,
-            *(found[name].sel(model=model).values[..., None] for name in ("median_intensity", "dispersion")),
-        )
-        for model in LINKS
-    ]
-    found["fitted"] = variable(
-        (*by_model, "intensity"), np.stack(curves, axis=2), "1", "probability of the fitted curve"
-    )
-    return found
+            units = outcomes["intensity"].attrs["units"] if unit == "intensity" else unit
+            fragility[prefix + name] = variable(by_model, _values(fits, name), units, meaning, **remark)
+    curves = []
+    for model in LINKS:
+        curve = fragility.sel(model=model)
+        median, dispersion = curve["median_intensity"].values, curve["dispersion"].values
+        curves.append(curve_probability(model, levels, median[..., None], dispersion[..., None]))
+    fitted = np.stack(curves, axis=2)
+    fragility["fitted"] = variable((*by_model, "intensity"), fitted, "1", "probability of the fitted curve")
+    return fragility
 
 
 _STATUS_ATTRIBUTES: dict[str, Any] = {
@@ -198,7 +196,7 @@ _STATUS_ATTRIBUTES: dict[str, Any] = {
 
 
 def _reached(outcomes: xr.Dataset, limit: str | float) -> Flags:
-    """Whether each record reaches a limit state, (block, intensity, record)."""
+    """Return True for each record that reaches a limit state, (block, intensity, record)."""
     overturned = outcomes["overturned"].values.astype(bool)
     if limit == "overturning":
         return overturned
@@ -208,16 +206,25 @@ def _reached(outcomes: xr.Dataset, limit: str | float) -> Flags:
         return overturned | (outcomes["peak_rotation"].values > limit)
 
 
-def _fits(reached: Flags, levels: Array, confidence: float, falling: bool, signs: int) -> list[list[list[CurveFit]]]:
-    options: dict[str, Any] = {"confidence": confidence, "falling": falling, "signs": signs}
-    return [[[fit_curve(own, levels, model=model, **options) for model in LINKS] for own in block] for block in reached]
+def _fits(reached: Flags, levels: Array, confidence: float, falling: bool, signs: int) -> NDArray[np.object_]:
+    """Fit the curves of each limit state and block, (demand, block, model) of `CurveFit`."""
+    fits = np.empty((*reached.shape[:2], len(LINKS)), dtype=object)
+    for k, n in np.ndindex(reached.shape[:2]):
+        for m, model in enumerate(LINKS):
+            fits[k, n, m] = fit_curve(
+                reached[k, n], levels, model=model, confidence=confidence, falling=falling, signs=signs
+            )
+    return fits
 
 
-def _each(fits: list[list[list[CurveFit]]], name: str) -> Array:
-    """One number of each fit; `median_intensity_lower` is the first of `median_interval`, and so on."""
+def _values(fits: NDArray[np.object_], name: str) -> Array:
+    """Return a number of each fit; `median_intensity_lower` is the first of `median_interval`, and so on."""
     name = name.replace("median_intensity", "median")
-    for end, suffix in enumerate(("_lower", "_upper")):
+    field, end = name, None
+    for number_of_end, suffix in enumerate(("_lower", "_upper")):
         if name.endswith(suffix):
-            interval = name.removesuffix(suffix) + "_interval"
-            return np.array([[[getattr(fit, interval)[end] for fit in block] for block in one] for one in fits])
-    return np.array([[[float(getattr(fit, name)) for fit in block] for block in one] for one in fits])
+            field, end = name.removesuffix(suffix) + "_interval", number_of_end
+    values = [getattr(fit, field) for fit in fits.ravel()]
+    if end is not None:
+        values = [interval[end] for interval in values]
+    return np.array(values, dtype=np.float64).reshape(fits.shape)

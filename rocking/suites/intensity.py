@@ -67,5 +67,5 @@ MEASURES = {
 
 
 def measure_of(name: str) -> Measure:
-    """The measure of that name."""
+    """Return the measure of that name."""
     return MEASURES[one_of("measure", name, MEASURES)]

@@ -75,11 +75,11 @@ def check_suite(
     measure: str,
     restitution: Scalar,
 ) -> Suite:
-    """The arguments of `rocking.fragility`, checked."""
+    """Check the arguments of `rocking.fragility`."""
     chosen, motions = measure_of(measure), checked_records(records)
-    bodies: tuple[Any, ...] = (
-        (blocks,) if isinstance(blocks, AbstractBody) or not isinstance(blocks, Iterable) else (*blocks,)
-    )
+    bodies: tuple[Any, ...] = (blocks,)
+    if not isinstance(blocks, AbstractBody) and isinstance(blocks, Iterable):
+        bodies = tuple(blocks)
     if not bodies or not all(isinstance(body, AbstractBlock) and body.shape == () for body in bodies):
         raise InvalidArgumentError(
             "blocks",
@@ -99,15 +99,15 @@ def check_suite(
 
 
 def checked_records(records: Any) -> tuple[Record, ...]:
-    """One or more records, or `InvalidArgumentError`."""
-    found = tuple(records) if isinstance(records, Iterable) else (records,)
-    if not found or not all(isinstance(motion, Record) for motion in found):
+    """Return one or more records, or raise `InvalidArgumentError`."""
+    motions = tuple(records) if isinstance(records, Iterable) else (records,)
+    if not motions or not all(isinstance(motion, Record) for motion in motions):
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
-    return found
+    return motions
 
 
 def checked_levels(intensity: ArrayLike, measure: Measure) -> Array:
-    """Ascending levels in the unit of the measure, or `InvalidArgumentError`."""
+    """Return ascending levels in the unit of the measure, or raise `InvalidArgumentError`."""
     unit = {"m s-2": "m/s2", "m s-1": "m/s"}.get(measure.unit, "-")
     levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=unit))
     if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):
@@ -128,18 +128,22 @@ def check_levels(levels: Array, record: Record, scales: Array, gravity: Sequence
 
 
 def different_names(names: Sequence[str]) -> list[str]:
-    """Unique names of the records: their own, with a number if several share it or there is none."""
+    """Return unique names of the records: their own, with a number if several share it or there is none."""
     count, used = Counter(names), Counter[str]()
-    found = []
-    for place, name in enumerate(names, start=1):
+    unique = []
+    for position, name in enumerate(names, start=1):
         used[name] += 1
-        number = f" ({used[name]})" if count[name] > 1 else ""
-        found.append(name + number if name else f"record {place}")
-    return found
+        if not name:
+            unique.append(f"record {position}")
+        elif count[name] > 1:
+            unique.append(f"{name} ({used[name]})")
+        else:
+            unique.append(name)
+    return unique
 
 
 def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag | None = None) -> xr.Dataset:
-    """The response of every block to every record at every level, by the solver for (2.2).
+    """Solve the response of every block to every record at every level, by the solver for (2.2).
 
     Result over (block, intensity, record): `peak_rotation`, `overturned`, `exceeded_alpha`, `outcome`, `impacts` and
     `scale`, with the properties of the blocks and of the records as coordinates.
@@ -149,17 +153,19 @@ def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag |
     scales = np.empty(shape)
     for k, record in enumerate(suite.records):
         scales[:, :, k], frequency = problems_of(suite, record)
-        found = responses_to(suite, record, scales[:, :, k], frequency, suite.restitution, threads=threads, stop=stop)
+        response = responses_to(
+            suite, record, scales[:, :, k], frequency, suite.restitution, threads=threads, stop=stop
+        )
         for name, values in fields.items():
-            values[:, :, k] = getattr(found, name)
+            values[:, :, k] = getattr(response, name)
     return described_outcomes(suite, fields | {"scale": scales})
 
 
 def problems_of(suite: Suite, record: Record) -> tuple[Array, Array]:
-    """The factor of a record [-], and the frequency parameter [rad/s], both (blocks, levels)."""
-    own = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]
+    """Return the factor of a record [-] and the frequency parameter [rad/s], both (blocks, levels)."""
+    recorded = np.array([suite.measure.of(record, block) for block in suite.blocks])[:, None]
     p = np.array([block.frequency_parameter for block in suite.blocks])[:, None]
-    ratio = suite.levels / own
+    ratio = suite.levels / recorded
     if suite.measure.scales_amplitude:
         return ratio, np.broadcast_to(p, ratio.shape)
     return np.ones_like(ratio), p / ratio
@@ -175,7 +181,7 @@ def responses_to(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Response:
-    """Responses (blocks, levels) of the blocks to a record times `scale`, with `restitution` (blocks,) of each."""
+    """Solve the responses (blocks, levels) to a record times `scale`, with `restitution` (blocks,) of each block."""
     return record_response(
         record,
         frequency_parameter=frequency,
@@ -196,19 +202,20 @@ def slenderness_of(suite: Suite, record: Record, scale: Array) -> Array:
 
 def vertical_scale_of(suite: Suite, record: Record, scale: Array) -> Array | None:
     """`vertical_scale` of `record_response` for the blocks under a record times `scale`, (blocks, levels)."""
+    if record.vertical is None:
+        return None
     gravity = np.array([block.gravity for block in suite.blocks])[:, None]
-    return None if record.vertical is None else np.asarray(scale * (STANDARD_GRAVITY / gravity))
+    return np.asarray(scale * (STANDARD_GRAVITY / gravity))
 
 
 def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Dataset:
-    """The arrays of `suite_outcomes` as a data set, with coordinates, units and meanings."""
-    about = {
-        name: (np.array([getattr(block, name) for block in suite.blocks]), unit, meaning)
-        for name, (unit, meaning) in BLOCK_COORDINATES.items()
-    }
+    """Return the arrays of `suite_outcomes` as a data set, with coordinates, units and meanings."""
+    properties = {}
+    for name, (unit, meaning) in BLOCK_COORDINATES.items():
+        properties[name] = (np.array([getattr(block, name) for block in suite.blocks]), unit, meaning)
     restitution = variable("block", suite.restitution, "1", "coefficient of restitution eta", equation="2.3")
-    found = labelled_outcomes(values, suite.levels, suite.measure, suite.records, about)
-    return found.assign_coords(restitution=restitution)
+    outcomes = labelled_outcomes(values, suite.levels, suite.measure, suite.records, properties)
+    return outcomes.assign_coords(restitution=restitution)
 
 
 def labelled_outcomes(
@@ -218,7 +225,7 @@ def labelled_outcomes(
     records: Sequence[Record],
     blocks: Mapping[str, tuple[NDArray[Any], str, str]],
 ) -> xr.Dataset:
-    """Arrays (block, intensity, record) as a data set; of the blocks values (blocks,), unit and meaning by name."""
+    """Label arrays (block, intensity, record); `blocks` has values (blocks,), unit and meaning by name."""
     attributes = {field.name: {"units": field.unit, **field.attributes} for field in FIELDS}
     attributes["scale"] = {"units": "1", "long_name": "factor by which the record is multiplied"}
     names = different_names([record.name for record in records])
@@ -232,7 +239,7 @@ def labelled_outcomes(
             "sha256 of the time step and the samples in m/s2",
         ),
     }
-    coordinates |= {name: variable("block", *about) for name, about in blocks.items()}
+    coordinates |= {name: variable("block", *column) for name, column in blocks.items()}
     for name, (unit, meaning) in RECORD_COORDINATES.items():
         column = np.array([getattr(record, name) for record in records])
         coordinates[name] = variable("record", column, unit, meaning)
@@ -244,7 +251,7 @@ def labelled_outcomes(
 
 
 def join_outcomes(parts: Sequence[xr.Dataset], measure: str) -> xr.Dataset:
-    """Outcomes of several groups of records, of the same blocks and levels, as those of one suite."""
+    """Join outcomes of several groups of records, of the same blocks and levels, as those of one suite."""
     joined = xr.concat(
         parts,
         "record",

@@ -41,7 +41,7 @@ HIGHEST_AMPLITUDE = 1000.0  # largest a = a_g/(g tan alpha) searched for overtur
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PulseFit(EqualByValue):
-    """The pulse that explains most of the energy of the velocity of a record.
+    """Pulse that explains most of the energy of the velocity of a record.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class PulseFit(EqualByValue):
         )
 
     def to_xarray(self) -> xr.Dataset:
-        """The pulse, and over `block` the comparison, as a data set with units and meanings."""
+        """Return the pulse, and over `block` the comparison, as a data set with units and meanings."""
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the solver)
 
         velocity, blocks = self.velocity, self.blocks
@@ -114,13 +114,13 @@ class PulseFit(EqualByValue):
             "alpha": ([block.alpha for block in blocks], "rad", "slenderness angle of the block"),
             "half_diagonal": ([block.half_diagonal for block in blocks], "m", "half diagonal of the block"),
         }
-        variables: dict[str, Any] = {name: variable((), *one) for name, one in pulse.items()}
-        variables |= {name: variable("block", *one) for name, one in scales.items()}
-        coordinates: dict[str, Any] = {name: variable("block", *one) for name, one in bodies.items()}
+        variables: dict[str, Any] = {name: variable((), *value) for name, value in pulse.items()}
+        variables |= {name: variable("block", *column) for name, column in scales.items()}
+        coordinates: dict[str, Any] = {name: variable("block", *column) for name, column in bodies.items()}
         return xr.Dataset(variables, coordinates, {"family": velocity.family})
 
     def to_pandas(self) -> pd.DataFrame:
-        """The same with one row for each block."""
+        """Return `to_xarray` as a table with a row for each block."""
         return self.to_xarray().to_dataframe()
 
     def acceleration(self, time: ArrayLike) -> Array:
@@ -130,11 +130,18 @@ class PulseFit(EqualByValue):
 
 
 def summary_of(fit: PulseFit) -> dict[str, Any]:
-    """Numbers of a fitted pulse by name, the ratio of the scales that of the first block; None for those it has not."""
+    """Return the numbers of a fitted pulse by name, None for those it has not; the ratio is that of the first block."""
     velocity = fit.velocity
-    own = {"centre": velocity.centre, "cycles": finite(velocity.cycles), "phase": finite(velocity.phase)}
-    found = {"pulse": velocity.family, "period": fit.period, "peak_acceleration": fit.peak_acceleration, **own}
-    return found | {"explained": fit.explained, "scale_ratio": finite(float(fit.scale_ratio[0]))}
+    return {
+        "pulse": velocity.family,
+        "period": fit.period,
+        "peak_acceleration": fit.peak_acceleration,
+        "centre": velocity.centre,
+        "cycles": finite(velocity.cycles),
+        "phase": finite(velocity.phase),
+        "explained": fit.explained,
+        "scale_ratio": finite(float(fit.scale_ratio[0])),
+    }
 
 
 def fit_pulse(
@@ -167,29 +174,28 @@ def fit_pulse(
         raise InvalidArgumentError("record", record, "a rocking.Record, such as rocking.read_record returns")
     families = FAMILIES if family is None else (one_of("family", family, FAMILIES),)
     if blocks is None:
-        compared: tuple[Any, ...] = tuple(
-            Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS
-        )
-    else:
-        compared = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
-        if not all(isinstance(block, AbstractBlock) and block.shape == () for block in compared):
-            raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
+        blocks = [Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS]
+    compared: tuple[Any, ...] = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
+    if not all(isinstance(block, AbstractBlock) and block.shape == () for block in compared):
+        raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
     fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
     best = max(fits, key=lambda fit: fit.explained)
     pulse, peak = best.acceleration_pulse()
-    of_record = []
+    record_scale, pulse_scale = [], []
     for block in compared:
         highest = min(HIGHEST_AMPLITUDE * block.uplift_acceleration / record.peak_acceleration, HIGHEST_SCALE)
-        of_record.append(overturning_scale(record, block, highest=highest, stop=stop))
-    of_pulse = [_overturning_acceleration(pulse, best.period, block, stop) / peak for block in compared]
-    return PulseFit(pulse, best.period, peak, best, best.explained, compared, np.array(of_record), np.array(of_pulse))
+        record_scale.append(overturning_scale(record, block, highest=highest, stop=stop))
+        pulse_scale.append(_overturning_acceleration(pulse, best.period, block, stop) / peak)
+    return PulseFit(
+        pulse, best.period, peak, best, best.explained, compared, np.array(record_scale), np.array(pulse_scale)
+    )
 
 
 def _overturning_acceleration(
     pulse: AbstractPulse, period: float, block: AbstractBlock, stop: StopFlag | None
 ) -> float:
-    """Lowest peak acceleration [m/s2] at which a pulse overturns a block with the restitution (2.4), by (2.2)."""
-    found = thresholds(
+    """Return the lowest peak acceleration [m/s2] that overturns a block with the restitution (2.4), by (2.2)."""
+    overturning = thresholds(
         pulse,
         frequency_ratio=2.0 * math.pi / period / block.frequency_parameter,
         restitution=block.inelastic_restitution,
@@ -197,4 +203,6 @@ def _overturning_acceleration(
         highest=HIGHEST_AMPLITUDE,
         stop=stop,
     )
-    return block.uplift_acceleration * float(found.amplitude[0]) if found.amplitude.size else math.nan
+    if not overturning.amplitude.size:
+        return math.nan
+    return float(block.uplift_acceleration * overturning.amplitude[0])

@@ -1,4 +1,4 @@
-"""What the outcomes of a suite depend on beside the intensity: friction, restitution, and the sampling of the records.
+"""Friction demand of a suite of records, and how its outcomes depend on the restitution and on the sampling.
 
 At each level every block is solved under every record four times: as `rocking.fragility` does, with a smaller and with
 a larger coefficient of restitution, and with the record interpolated band-limited at half its step. The largest
@@ -90,80 +90,81 @@ def suite_sensitivity(
     restitution_step = number("restitution_step", restitution_step, 0.0, 1.0, closed="right")
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
     outcomes = sensitivity_outcomes(suite, restitution_step, threads=threads, stop=stop)
-    found = outcomes.merge(sensitivity_of_outcomes(outcomes, confidence))
-    found.attrs |= {"confidence": confidence}
-    return found.isel(block=0) if isinstance(blocks, AbstractBlock) else found
+    sensitivity = outcomes.merge(sensitivity_of_outcomes(outcomes, confidence))
+    sensitivity.attrs |= {"confidence": confidence}
+    return sensitivity.isel(block=0) if isinstance(blocks, AbstractBlock) else sensitivity
 
 
 def sensitivity_outcomes(
     suite: Suite, restitution_step: float, *, threads: int | None = None, stop: StopFlag | None = None
 ) -> xr.Dataset:
-    """The variables of `suite_sensitivity` over (block, intensity, record)."""
+    """Solve the variables of `suite_sensitivity` over (block, intensity, record)."""
     shape = tuple(map(len, (suite.blocks, suite.levels, suite.records)))
     fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in (PEAK_ROTATION, OVERTURNED, OUTCOME)}
     changed = {name: np.empty(shape, dtype=OVERTURNED.file_dtype) for name in VARIANTS}
     scales, friction = np.empty(shape), np.empty(shape)
-    low, high = (np.clip(suite.restitution + step, 0.0, 1.0) for step in (-restitution_step, restitution_step))
+    low = np.clip(suite.restitution - restitution_step, 0.0, 1.0)
+    high = np.clip(suite.restitution + restitution_step, 0.0, 1.0)
     for k, record in enumerate(suite.records):
         scale, frequency = problems_of(suite, record)
         resampled = record.resampled(record.time_step / REFINEMENT)
         check_levels(suite.levels, resampled, problems_of(suite, resampled)[0], suite.gravity)
-        kinds = (record, suite.restitution), (record, low), (record, high), (resampled, suite.restitution)
-        as_given, *others = (
-            responses_to(suite, motion, scale, frequency, eta, threads=threads, stop=stop) for motion, eta in kinds
-        )
+        response = responses_to(suite, record, scale, frequency, suite.restitution, threads=threads, stop=stop)
         for name, values in fields.items():
-            values[:, :, k] = getattr(as_given, name)
-        for name, response in zip(VARIANTS, others, strict=True):
+            values[:, :, k] = getattr(response, name)
+        variants = (record, low), (record, high), (resampled, suite.restitution)
+        for name, (motion, eta) in zip(VARIANTS, variants, strict=True):
+            response = responses_to(suite, motion, scale, frequency, eta, threads=threads, stop=stop)
             changed[name][:, :, k] = response.overturned
         scales[:, :, k] = scale
         friction[:, :, k] = _friction_demands(suite, record, scale, frequency, stop)
-    found = described_outcomes(suite, fields | {"scale": scales})
-    overturned = found["overturned"].attrs
+    outcomes = described_outcomes(suite, fields | {"scale": scales})
+    overturned = outcomes["overturned"].attrs
     for name, meaning in VARIANTS.items():
         attributes = overturned | {"long_name": f"{overturned['long_name']}, {meaning}"}
-        found[f"overturned_{name}"] = (DIMENSIONS, changed[name], attributes)
-    found["friction_demand"] = variable(DIMENSIONS, friction, "1", FRICTION_DEMAND)
-    eta = {"units": "1", "equation": "2.3"}
+        outcomes[f"overturned_{name}"] = (DIMENSIONS, changed[name], attributes)
+    outcomes["friction_demand"] = variable(DIMENSIONS, friction, "1", FRICTION_DEMAND)
     steps = np.array([record.time_step / REFINEMENT for record in suite.records])
-    return found.assign_coords(
-        restitution_low=("block", low, eta | {"long_name": "smaller coefficient of restitution"}),
-        restitution_high=("block", high, eta | {"long_name": "larger coefficient of restitution"}),
+    return outcomes.assign_coords(
+        restitution_low=variable("block", low, "1", "smaller coefficient of restitution", equation="2.3"),
+        restitution_high=variable("block", high, "1", "larger coefficient of restitution", equation="2.3"),
         resampled_time_step=variable("record", steps, "s", "time step of the interpolated record"),
     )
 
 
 def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Dataset:
-    """The variables of `suite_sensitivity` over (block, intensity), from those over the records as well."""
+    """Count the variables of `suite_sensitivity` over (block, intensity), from those over the records as well."""
     by_level = ("block", "intensity")
     overturned = outcomes["overturned"].transpose(*DIMENSIONS).values.astype(bool)
     names = outcomes["record"].values.astype(str)
     columns = counted(overturned, confidence, "overturn the block")
-    others = {name: outcomes[f"overturned_{name}"].transpose(*DIMENSIONS).values.astype(bool) for name in VARIANTS}
-    changed = {name: other != overturned for name, other in others.items()}
     for name, meaning in VARIANTS.items():
-        fraction, number = others[name].mean(axis=-1), changed[name].sum(axis=-1).astype(np.int32)
+        variant = outcomes[f"overturned_{name}"].transpose(*DIMENSIONS).values.astype(bool)
+        changed = variant != overturned
+        fraction, number = variant.mean(axis=-1), changed.sum(axis=-1).astype(np.int32)
         columns[f"fraction_{name}"] = fraction, f"fraction of records that overturn the block, {meaning}"
         columns[f"changed_{name}"] = number, f"number of records with another outcome, {meaning}"
     demand = outcomes["friction_demand"].transpose(*DIMENSIONS).values
     median = np.quantile(demand, 0.5, axis=-1, method="inverted_cdf")  # also where some are infinite
     columns["friction_demand_median"] = median, f"not exceeded under half of the records: {FRICTION_DEMAND}"
     columns["friction_demand_largest"] = demand.max(axis=-1), f"largest of all records: {FRICTION_DEMAND}"
-    found = xr.Dataset(
+    sensitivity = xr.Dataset(
         {name: variable(by_level, values, "1", meaning) for name, (values, meaning) in columns.items()},
         outcomes.coords,
         {"measure": outcomes.attrs["measure"]},
     )
-    named = [["; ".join(names[own]) for own in block] for block in changed["resampled"]]
-    found["records_changed_by_sampling"] = variable(
-        by_level, np.array(named, dtype=str), "", "names of the records with changed_resampled"
-    )
-    return found
+    resampled = outcomes["overturned_resampled"].transpose(*DIMENSIONS).values.astype(bool) != overturned
+    records = np.empty(resampled.shape[:2], dtype=object)
+    for index in np.ndindex(records.shape):
+        records[index] = "; ".join(names[resampled[index]])
+    meaning = "names of the records with changed_resampled"
+    sensitivity["records_changed_by_sampling"] = variable(by_level, records.astype(str), "", meaning)
+    return sensitivity
 
 
 def _friction_demands(suite: Suite, record: Record, scale: Array, frequency: Array, stop: StopFlag | None) -> Array:
-    """The largest friction demand of each block at each level, (blocks, levels)."""
-    found = np.full(scale.shape, np.nan)
+    """Solve the largest friction demand of each block at each level, (blocks, levels)."""
+    demands = np.full(scale.shape, np.nan)
     slenderness, vertical = slenderness_of(suite, record, scale), vertical_scale_of(suite, record, scale)
     for k, (block, eta) in enumerate(zip(suite.blocks, suite.restitution.tolist(), strict=True)):
         if not block.contact_is_known:
@@ -178,5 +179,5 @@ def _friction_demands(suite: Suite, record: Record, scale: Array, frequency: Arr
                 vertical_scale=None if vertical is None else float(vertical[k, n]),
                 stop=stop,
             )
-            found[k, n] = contact_extremes(motion).largest_friction_demand
-    return found
+            demands[k, n] = contact_extremes(motion).largest_friction_demand
+    return demands

@@ -21,7 +21,7 @@ def spectrum_volume(
     restitution: Scalar = "momentum",
     points: int = 40,
 ) -> xr.Dataset:
-    """Integral of the rocking spectrum of a record over sizes and shapes of blocks.
+    """Integrate the rocking spectrum of a record over sizes and shapes of blocks.
 
     The rocking spectrum is max |theta|/alpha of rigid blocks (2.2) over the frequency parameter p and the slenderness
     angle alpha (Makris & Konstantinidis 2003); here it is 1 where the block overturns or passes alpha. Its volume was
@@ -56,18 +56,19 @@ def spectrum_volume(
     p, p_range = _middles("frequency_parameter", frequency_parameter, 1e3, count)
     angle, alpha_range = _middles("alpha", alpha, 1.5, count)
     momentum = np.maximum(1.0 - 1.5 * np.sin(angle) ** 2, 0.0)  # (2.4)
-    found = record_response(
+    response = record_response(
         record,
         frequency_parameter=p[:, None],
         slenderness=STANDARD_GRAVITY * np.tan(angle) / record.peak_acceleration,
         restitution=momentum if restitution == "momentum" else RESTITUTION.number(restitution),
         alpha=angle,
     )
-    mean = float(np.where(found.overturned, 1.0, np.minimum(found.peak_rotation, 1.0)).mean())
+    overturned = response.overturned
+    mean = float(np.where(overturned, 1.0, np.minimum(response.peak_rotation, 1.0)).mean())
     values = {
         "volume": (mean * p_range * alpha_range, "rad2 s-1", "volume under the rocking spectrum"),
         "mean": (mean, "1", "mean of max |theta|/alpha, at most 1"),
-        "overturned": (float(np.mean(found.overturned)), "1", "share of the blocks that overturn"),
+        "overturned": (float(np.mean(overturned)), "1", "share of the blocks that overturn"),
     }
     return xr.Dataset(
         {name: variable((), value, unit, text) for name, (value, unit, text) in values.items()},
@@ -76,7 +77,7 @@ def spectrum_volume(
 
 
 def _middles(name: str, ends: tuple[float, float], largest: float, points: int) -> tuple[Array, float]:
-    """Middles of equal parts of a range, and its length."""
+    """Return the middles of equal parts of a range, and its length."""
     low, high = in_range(name, ends, 0.0, largest, closed="right") if np.shape(ends) == (2,) else (1.0, 0.0)
     if not low < high:
         raise InvalidArgumentError(name, ends, "two ends of a range, ascending")

@@ -1,4 +1,4 @@
-"""What the outcomes of a suite say of each block: the margin of each record, and quantiles of the peak rotation."""
+"""Results of a suite for each block: the margin of each record, and quantiles of the peak rotation."""
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,7 @@ QUANTILES = (0.16, 0.5, 0.84)
 
 
 def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
-    """The mildest intensity at which each record overturns each block, and the levels above it that the block survives.
+    """Return the mildest intensity at which each record overturns each block, and the levels above it that it survives.
 
     From a result of `with_margins`, over (block, record): `overturning_intensity`, in the unit of the measure, nan
     where the block survives all; `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-],
@@ -19,17 +19,17 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
     order = ("block", "record", "intensity")
     survived = ~outcomes["overturned"].transpose(*order).values.astype(bool)
     levels = outcomes["intensity"].values
-    found = outcomes["overturning_intensity"].transpose("block", "record")
+    mildest = outcomes["overturning_intensity"].transpose("block", "record")
     if MEASURES[outcomes.attrs["measure"]].scales_amplitude:
-        scale = found.values * outcomes["scale"].transpose(*order).values[..., 0] / levels[0]
-        stronger = levels > found.values[..., None]
+        scale = mildest.values * outcomes["scale"].transpose(*order).values[..., 0] / levels[0]
+        stronger = levels > mildest.values[..., None]
     else:
-        scale = np.where(np.isnan(found), np.nan, 1.0)
-        stronger = levels < found.values[..., None]
+        scale = np.where(np.isnan(mildest), np.nan, 1.0)
+        stronger = levels < mildest.values[..., None]
     dims = ("block", "record")
     return xr.Dataset(
         {
-            "overturning_intensity": (dims, found.values, {"units": outcomes["intensity"].attrs.get("units", "1")}),
+            "overturning_intensity": (dims, mildest.values, {"units": outcomes["intensity"].attrs.get("units", "1")}),
             "overturning_scale": (dims, scale, {"units": "1"}),
             "levels_survived_above": (dims, (survived & stronger).sum(axis=2), {"units": "1"}),
         },
@@ -38,8 +38,7 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
 
 
 def rotation_quantiles(outcomes: xr.Dataset) -> xr.DataArray:
-    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
-    intensity).
+    """Return the peak rotation |theta|/alpha that a share of the records does not exceed, (quantile, block, intensity).
 
     A record that overturns the block exceeds every rotation: nan where too many do. A quantile is the smallest peak of
     the sample that at least this share of the records does not exceed: nothing is interpolated.

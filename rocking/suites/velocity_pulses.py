@@ -23,7 +23,7 @@ pseudo-inverses and nonlinear least squares problems whose variables separate, S
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -60,7 +60,7 @@ class Family:
 
     @property
     def has_cycles(self) -> bool:
-        """Whether gamma is a parameter."""
+        """True if gamma is a parameter."""
         return len(self.cycles) > 1
 
 
@@ -98,7 +98,7 @@ class VelocityPulse(EqualByValue):
     explained: float
 
     def velocity(self, time: Array) -> Array:
-        """Velocity [m/s] at times [s] from the first sample."""
+        """Return the velocity [m/s] at times [s] from the first sample."""
         phi = 2.0 * math.pi / self.period * (float_array("time", time, unit="s") - self.centre)
         basis = FAMILIES[self.family].basis(phi, self.cycles)
         if basis.shape[0] == 1:
@@ -106,7 +106,7 @@ class VelocityPulse(EqualByValue):
         return np.asarray(self.amplitude * (math.cos(self.phase) * basis[0] + math.sin(self.phase) * basis[1]))
 
     def acceleration_pulse(self) -> tuple[AbstractPulse, float]:
-        """The acceleration: a pulse of unit peak, and its peak a_g [m/s2], > 0."""
+        """Return the acceleration: a pulse of unit peak, and its peak a_g [m/s2], > 0."""
         rate = 2.0 * math.pi / self.period  # d phi/dt
         if FAMILIES[self.family].has_cycles:
             pulse = pulses.pulse(self.family, cycles=self.cycles, phase=self.phase)
@@ -120,46 +120,45 @@ class VelocityPulse(EqualByValue):
 
 
 def _slope_peak(pulse: AbstractPulse) -> float:
-    """Largest slope of (1 - phi^2/3) exp(-phi^2/6) [-], which the antisymmetric wavelet has as its unit."""
+    """Return the largest slope of (1 - phi^2/3) exp(-phi^2/6) [-], which the antisymmetric wavelet has as its unit."""
     phi = np.array(pulse.stationary)
     z = phi / math.sqrt(3.0)
     return float(np.abs((z**3 - 3.0 * z) * np.exp(-0.5 * z * z)).max() / math.sqrt(3.0))
 
 
 def fit_velocity(velocity: Array, time_step: float, family: str) -> VelocityPulse:
-    """The pulse of a family that takes most of the energy of a velocity.
+    """Fit the pulse of a family that takes most of the energy of a velocity.
 
     `velocity` (n,): [m/s], at n >= 2 `SHORTEST_PERIOD` uniform times; not all zero. `time_step`: [s], > 0. `family`:
     one of `FAMILIES`. Raises `InvalidArgumentError` if the velocity is too short or zero.
     """
-    chosen, values = FAMILIES[family], np.asarray(velocity, dtype=np.float64)
+    kind, values = FAMILIES[family], np.asarray(velocity, dtype=np.float64)
     if values.size < 2 * SHORTEST_PERIOD:
         raise InvalidArgumentError("record", f"{values.size} samples", f"at least {2 * SHORTEST_PERIOD} samples")
     scale = float(np.abs(values).max())
     if not 0.0 < scale < math.inf:
         raise InvalidArgumentError("record", f"largest velocity {scale} m/s", "a motion whose velocity is not zero")
-    cells = sorted(_scan(values / scale, time_step, chosen), reverse=True)
+    cells = sorted(_scan(values / scale, time_step, kind), reverse=True)
     starts: list[tuple[float, float, float, float]] = []
     for cell in cells:
-        if len(starts) < STARTS and all(abs(math.log(cell[1] / other[1])) > PERIOD_SEPARATION for other in starts):
+        separations = [abs(math.log(cell[1] / start[1])) for start in starts]
+        if len(starts) < STARTS and min(separations, default=math.inf) > PERIOD_SEPARATION:
             starts.append(cell)
-    fits = [_refined(values / scale, time_step, chosen, start[1:]) for start in starts]
-    found = max(fits, key=lambda fit: fit.explained)
-    return VelocityPulse(
-        found.family, found.period, found.centre, found.cycles, found.phase, scale * found.amplitude, found.explained
-    )
+    fits = [_refined(values / scale, time_step, kind, start[1:]) for start in starts]
+    best = max(fits, key=lambda fit: fit.explained)
+    return replace(best, amplitude=scale * best.amplitude)
 
 
 def _scan(velocity: Array, time_step: float, family: Family) -> Iterator[tuple[float, float, float, float]]:
-    """Share of energy, T_p [s], t_0 [s] and gamma at the best t_0 for each T_p and gamma of the scan."""
+    """Yield the share of energy, T_p [s], t_0 [s] and gamma at the best t_0 for each T_p and gamma of the scan."""
     shortest, longest = SHORTEST_PERIOD * time_step, velocity.size * time_step
     count = math.ceil(math.log(longest / shortest) / math.log(PERIOD_RATIO)) + 1
     energy = float(velocity @ velocity)
     for period in np.geomspace(shortest, longest, count):
         # the pulse is resolved by far fewer samples than a record has
         merged = max(1, int(period / (SAMPLES_PER_PERIOD * time_step)))
-        whole = velocity.size // merged * merged
-        averaged = velocity[:whole].reshape(-1, merged).mean(axis=1)
+        used = velocity.size // merged * merged
+        averaged = velocity[:used].reshape(-1, merged).mean(axis=1)
         step = merged * time_step
         per_phase = period / (2.0 * math.pi * step)
         half = {cycles: math.ceil(family.half_window(cycles) * per_phase) for cycles in family.cycles}
@@ -181,7 +180,7 @@ def _scan(velocity: Array, time_step: float, family: Family) -> Iterator[tuple[f
 
 
 def _refined(velocity: Array, time_step: float, family: Family, start: tuple[float, float, float]) -> VelocityPulse:
-    """The local minimum of the residual that belongs to a cell of the scan.
+    """Return the local minimum of the residual that belongs to a cell of the scan.
 
     The velocity is zero before and after the record, as in the scan: else a pulse could lie outside for the most part,
     with any amplitude.
@@ -196,9 +195,9 @@ def _refined(velocity: Array, time_step: float, family: Family, start: tuple[flo
         return projected(parameters)[1]
 
     def projected(parameters: Array) -> tuple[Array, Array]:
-        """The coefficients of the basis functions, and the residual."""
-        own = float(parameters[2]) if family.has_cycles else math.nan
-        basis = family.basis(2.0 * math.pi * math.exp(-parameters[0]) * (time - parameters[1] * period), own)
+        """Return the coefficients of the basis functions, and the residual."""
+        gamma = float(parameters[2]) if family.has_cycles else math.nan
+        basis = family.basis(2.0 * math.pi * math.exp(-parameters[0]) * (time - parameters[1] * period), gamma)
         coefficients: Array = np.linalg.lstsq(basis.T, padded, rcond=None)[0].astype(np.float64)
         return coefficients, padded - coefficients @ basis
 
@@ -207,7 +206,7 @@ def _refined(velocity: Array, time_step: float, family: Family, start: tuple[flo
     first = np.array([math.log(period), centre / period, *([cycles] if family.has_cycles else [])])
     low = np.array([math.log(shortest), 0.0, MIN_CYCLES])[: first.size]
     high = np.array([math.log(longest), span, MAX_CYCLES])[: first.size]
-    found = least_squares(
+    minimum = least_squares(
         residual_of,
         np.clip(first, low + 1e-9, high - 1e-9),
         bounds=(low, high),
@@ -217,10 +216,10 @@ def _refined(velocity: Array, time_step: float, family: Family, start: tuple[flo
         gtol=1e-14,
         max_nfev=100,
     )
-    coefficients, residual = projected(found.x)
+    coefficients, residual = projected(minimum.x)
     explained = max(0.0, 1.0 - float(residual @ residual) / energy)
-    period, centre = math.exp(found.x[0]), float(found.x[1]) * period
+    period, centre = math.exp(minimum.x[0]), float(minimum.x[1]) * period
     if not family.has_cycles:
         return VelocityPulse(family.name, period, centre, math.nan, math.nan, float(coefficients[0]), explained)
     amplitude, phase = math.hypot(*coefficients), math.atan2(coefficients[1], coefficients[0])
-    return VelocityPulse(family.name, period, centre, float(found.x[2]), phase, amplitude, explained)
+    return VelocityPulse(family.name, period, centre, float(minimum.x[2]), phase, amplitude, explained)

@@ -54,9 +54,9 @@ def test_values_that_are_not_real_numbers_are_rejected(name, value):
 
 def test_texts_with_units_are_accepted_in_lists():
     block = rocking.Block("40 cm", "1.6 m")
-    found = block.response("sine", peak_acceleration=["0.4 g", "400 gal", 4.0], period="500 ms")
+    responses = block.response("sine", peak_acceleration=["0.4 g", "400 gal", 4.0], period="500 ms")
     expected = block.response("sine", peak_acceleration=[0.4 * 9.80665, 4.0, 4.0], period=0.5)
-    np.testing.assert_array_equal(found.rotation, expected.rotation)
+    np.testing.assert_array_equal(responses.rotation, expected.rotation)
     with pytest.raises(InvalidArgumentError, match=r"`peak_acceleration` = '0.4 s'.*such as 4 m/s\^2"):
         block.response("sine", peak_acceleration=["0.4 g", "0.4 s"], period=0.5)
     with pytest.raises(InvalidArgumentError, match="percentage"):
@@ -69,15 +69,15 @@ def test_restitution_from_momentum_where_the_angle_is_known():
     expected = rocking.peak_response("sine", **rigid, alpha=alpha, restitution=1.0 - 1.5 * np.sin(alpha) ** 2)
     assert rocking.peak_response("sine", **rigid, alpha=alpha, restitution="momentum") == expected
     labelled = xr.DataArray(alpha, dims="angle")
-    found = rocking.peak_response("sine", **rigid, alpha=labelled, restitution="momentum")
-    np.testing.assert_array_equal(found.peak_rotation, expected.peak_rotation)
+    response = rocking.peak_response("sine", **rigid, alpha=labelled, restitution="momentum")
+    np.testing.assert_array_equal(response.peak_rotation, expected.peak_rotation)
     eta = rocking.Block.from_slenderness_angle("15 deg", 1.0).inelastic_restitution
-    one = {"frequency_ratio": 5.0, "alpha": "15 deg"}
-    assert rocking.time_history("sine", slenderness=0.4, restitution="momentum", **one).restitution == pytest.approx(
-        eta
-    )
-    changes = rocking.thresholds("sine", restitution="momentum", **one).amplitude
-    np.testing.assert_allclose(changes, rocking.thresholds("sine", restitution=eta, **one).amplitude, rtol=1e-9)
+    arguments = {"frequency_ratio": 5.0, "alpha": "15 deg"}
+    assert rocking.time_history(
+        "sine", slenderness=0.4, restitution="momentum", **arguments
+    ).restitution == pytest.approx(eta)
+    changes = rocking.thresholds("sine", restitution="momentum", **arguments).amplitude
+    np.testing.assert_allclose(changes, rocking.thresholds("sine", restitution=eta, **arguments).amplitude, rtol=1e-9)
     for angle in (None, 0.0):
         with pytest.raises(InvalidArgumentError, match=r"`restitution` = 'momentum'.*needs `alpha` > 0"):
             rocking.peak_response("sine", **rigid, alpha=angle, restitution="momentum")

@@ -83,11 +83,11 @@ def test_work_ends_soon_after_cancellation(name):
     thread.start()
     thread.join(0.3)
     assert thread.is_alive()
-    asked = time.process_time()
+    start = time.process_time()
     stop.set()
     thread.join(30)
     assert ended, "it went on to its end"
-    assert ended[0] - asked < SOON
+    assert ended[0] - start < SOON
 
 
 MOTION, BLOCK, LEVELS = noise(1), rocking.Block(0.4, 1.6), {"intensity": [3.0, 6.0]}
@@ -120,14 +120,14 @@ def test_a_flag_that_is_not_set_changes_no_result():
 
 
 def test_cancelling_the_whole_cancels_its_children_only():
-    whole = StopFlag()
-    with whole.child() as part:
+    parent = StopFlag()
+    with parent.child() as part:
         part.set()
-        assert not whole.is_set()
-    with whole.child() as part:
-        whole.set()
+        assert not parent.is_set()
+    with parent.child() as part:
+        parent.set()
         assert part.is_set()
-    with whole.child() as part:
+    with parent.child() as part:
         assert part.is_set()
 
 

@@ -52,7 +52,7 @@ def read_only(*values):
 
 def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
     precompile.load_kernels()
-    forms = {one.__name__: len(one.signatures) for one in ENTRIES}  # other tests may have added to them
+    forms = {entry.__name__: len(entry.signatures) for entry in ENTRIES}  # other tests may have added to them
     for name in rocking.PULSE_NAMES:
         for pulse in (name, "-" + name):
             for alpha in (None, 0.3, read_only(0.0, 0.3)):
@@ -70,17 +70,17 @@ def test_each_entry_has_one_signature_for_all_arguments(tmp_path):
     opened = open_cube(tmp_path)
     for eta in (0.85, read_only(0.86, 0.9)):
         opened.response(slenderness=read_only(0.8), frequency_ratio=3, restitution=eta, alpha=0.1)
-    assert {one.__name__: len(one.signatures) for one in ENTRIES} == forms
+    assert {entry.__name__: len(entry.signatures) for entry in ENTRIES} == forms
 
 
 def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
     """A sine as the sum of equal parts."""
     sine, groups = rocking.pulse("sine"), {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.9}
-    whole = rocking.peak_response(sine, **groups).peak_rotation
+    single = rocking.peak_response(sine, **groups).peak_rotation
     for count in (2, 5, MAX_SINUSOIDS):
         terms = tuple((c / count, w, d) for c, w, d in sine.terms for _ in range(count))
         parts = SinusoidalPulse("parts", sine.start, sine.end, sine.stationary, terms)
-        np.testing.assert_allclose(rocking.peak_response(parts, **groups).peak_rotation, whole, rtol=1e-12)
+        np.testing.assert_allclose(rocking.peak_response(parts, **groups).peak_rotation, single, rtol=1e-12)
     with pytest.raises(InvalidArgumentError, match=f"1 to {MAX_SINUSOIDS} triples"):
         SinusoidalPulse("many", sine.start, sine.end, sine.stationary, sine.terms * (MAX_SINUSOIDS + 1))
 
@@ -110,9 +110,9 @@ for name in ("ricker", "sine", "c2"):
 entries = solve_by_arcs, solve_batch
 print(sum(sum(one.stats.cache_misses.values()) for one in entries), digest.hexdigest())
 """
-    found = [script(code, NUMBA_CACHE_DIR=str(tmp_path)).split() for _ in range(2)]
-    assert [misses for misses, _ in found] == ["2", "0"]
-    assert found[0][1] == found[1][1]
+    printed = [script(code, NUMBA_CACHE_DIR=str(tmp_path)).split() for _ in range(2)]
+    assert [misses for misses, _ in printed] == ["2", "0"]
+    assert printed[0][1] == printed[1][1]
 
 
 def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypatch):
@@ -147,8 +147,8 @@ def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypat
     values = np.linspace(0.1, 1.0, 4)
     sums = [[weighted_sum.py_func(values, first, weight) for first in (0, 1, 2)] for weight in (2.0, 5.0)]
     expected = [a + b - c for a, b, c in sums]
-    found = [with_one_weight(values), with_any_weight(values, 5.0)]
-    assert found == pytest.approx(expected, rel=1e-14)
+    computed = [with_one_weight(values), with_any_weight(values, 5.0)]
+    assert computed == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system binds no process to a core")

@@ -34,13 +34,13 @@ def record():
 
 
 def configuration():
-    given = {
+    suite = {
         "name": "example", "records": {"folder": "motions", "pattern": "*.csv"}, "intensity": [1.0, 2.0],
         "blocks": [{"width": 0.4, "height": 1.6}], "measure": "pga",
         "sensitivity": {"intensity": [1.0], "restitution_step": 0.1},
         "map": {"intensity": 1.0, "half_diagonal": [1.0, 2.0], "alpha_deg": [5.0, 10.0]},
     }  # fmt: skip
-    return suite_configuration(given, Path())
+    return suite_configuration(suite, Path())
 
 
 EXAMPLES = {
@@ -88,16 +88,16 @@ def dataclasses_of_the_package():
 
 
 def test_no_dataclass_compares_arrays_as_truth_values():
-    found = [*dataclasses_of_the_package()]
+    kinds = [*dataclasses_of_the_package()]
     arrays = re.compile(r"(NDArray\b.*|\w*Arrays?|Floats|Flags)( \| None)?")
-    holding = [one for one in found if any(arrays.match(str(field.type)) for field in dataclasses.fields(one))]
+    holding = [kind for kind in kinds if any(arrays.match(str(field.type)) for field in dataclasses.fields(kind))]
     assert len(holding) > 15
-    for one in holding:
-        assert not one.__dataclass_params__.eq or one.__eq__ is EqualByValue.__eq__, one
+    for kind in holding:
+        assert not kind.__dataclass_params__.eq or kind.__eq__ is EqualByValue.__eq__, kind
 
 
 def test_every_kind_of_result_has_an_example():
-    kinds = {one.__name__ for one in dataclasses_of_the_package() if issubclass(one, EqualByValue)}
+    kinds = {kind.__name__ for kind in dataclasses_of_the_package() if issubclass(kind, EqualByValue)}
     assert kinds == EXAMPLES.keys()
 
 
@@ -108,34 +108,34 @@ def example(name):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_equal_results_are_equal(name):
-    one, other = example(name), EXAMPLES[name]()
-    copy = pickle.loads(pickle.dumps(one))
-    assert one is not other
-    assert one == other == copy
-    assert copy is not one
-    assert (one != other) is False
-    assert one != "something else"
+    result, other = example(name), EXAMPLES[name]()
+    copy = pickle.loads(pickle.dumps(result))
+    assert result is not other
+    assert result == other == copy
+    assert copy is not result
+    assert (result != other) is False
+    assert result != "something else"
     assert other not in [None]
     with pytest.raises(TypeError, match="unhashable"):
-        hash(one)
+        hash(result)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_results_that_differ_in_one_field_differ(name):
-    one = example(name)
-    for field in dataclasses.fields(one):
+    result = example(name)
+    for field in dataclasses.fields(result):
         if field.compare:
-            changed = pickle.loads(pickle.dumps(one))
-            value = getattr(one, field.name)
+            changed = pickle.loads(pickle.dumps(result))
+            value = getattr(result, field.name)
             if isinstance(value, np.ndarray) and value.dtype.names:
                 records = value.copy()
                 records["impacts"] += 1
                 object.__setattr__(changed, field.name, records)
-                assert one != changed, field.name
+                assert result != changed, field.name
                 continue
             object.__setattr__(changed, field.name, value + 1 if isinstance(value, np.ndarray | float) else "changed")
             same = isinstance(value, np.ndarray | float) and bool(np.all(np.isnan(value)))
-            assert (one == changed) == same, field.name
+            assert (result == changed) == same, field.name
 
 
 RESULTS = (
@@ -147,14 +147,14 @@ RESULTS = (
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_results_are_said_in_words_and_exported_with_units(name):
-    one = example(name)
-    assert repr(one).startswith(("<rocking.", "<rocking_assessment."))
-    assert repr(one).count("\n") < 2
-    labelled = one.to_xarray()
+    result = example(name)
+    assert repr(result).startswith(("<rocking.", "<rocking_assessment."))
+    assert repr(result).count("\n") < 2
+    labelled = result.to_xarray()
     for variable in labelled.data_vars.values():
         assert variable.attrs["long_name"], variable.name
         assert "units" in variable.attrs or variable.dtype.kind not in "fi", variable.name
-    table = one.to_pandas()
+    table = result.to_pandas()
     numbers = {key for key, variable in labelled.data_vars.items() if variable.dtype.kind == "f" and not variable.dims}
     assert numbers <= set(table.columns if table.ndim == 2 else table.index)
 
@@ -162,18 +162,18 @@ def test_results_are_said_in_words_and_exported_with_units(name):
 def test_cubes_are_equal_if_their_files_are(tmp_path):
     for eta in (0.85, 0.9):
         write_dataset(spectrum("sine", restitution=eta, **GRID), tmp_path / f"eta-{eta:.2f}.nc")
-    one, other = (rocking.open_cube(tmp_path / "eta-0.85.nc") for _ in range(2))
+    cube, other = (rocking.open_cube(tmp_path / "eta-0.85.nc") for _ in range(2))
     points = {"slenderness": [0.3, 0.5], "frequency_ratio": 5.0, "absolute_tolerance": 1.0}
-    expected = one.response(**points)  # fills the tables that hold addresses
-    copy = pickle.loads(pickle.dumps(one))
+    expected = cube.response(**points)  # fills the tables that hold addresses
+    copy = pickle.loads(pickle.dumps(cube))
     assert isinstance(copy, Cube)
-    assert one == other == copy
+    assert cube == other == copy
     assert copy.response(**points) == expected
-    assert one != rocking.open_cube(tmp_path / "eta-0.90.nc")
-    assert one != rocking.open_cube(tmp_path)
+    assert cube != rocking.open_cube(tmp_path / "eta-0.90.nc")
+    assert cube != rocking.open_cube(tmp_path)
     assert rocking.open_cube(tmp_path) == rocking.open_cube(tmp_path)
     with pytest.raises(TypeError, match="unhashable"):
-        hash(one)
+        hash(cube)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +183,7 @@ def test_cubes_are_equal_if_their_files_are(tmp_path):
     ids=["Block", "EquivalentBlock", "Record", "pulse"],
 )  # fmt: skip
 def test_what_holds_no_writable_array_has_a_hash(make):
-    one, copy = make(), pickle.loads(pickle.dumps(make()))
-    assert one == copy
-    assert hash(one) == hash(copy)
-    assert one != "something else"
+    value, copy = make(), pickle.loads(pickle.dumps(make()))
+    assert value == copy
+    assert hash(value) == hash(copy)
+    assert value != "something else"

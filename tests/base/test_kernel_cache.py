@@ -72,14 +72,14 @@ def empty(request, fork, tmp_path_factory):
 @pytest.fixture
 def run(empty, fork, tmp_path):
     folder, way = empty
-    kept = Path(shutil.copytree(folder, tmp_path / "kept"))
+    cache_copy = Path(shutil.copytree(folder, tmp_path / "kept"))
     (tmp_path / "small_kernels.py").write_text(KERNELS)
 
     def forked(code=CALL):
-        found = f"import sys; sys.path.append({str(tmp_path)!r})\n"
-        return fork(found + START + code, NUMBA_CACHE_DIR=str(kept), **way)
+        path = f"import sys; sys.path.append({str(tmp_path)!r})\n"
+        return fork(path + START + code, NUMBA_CACHE_DIR=str(cache_copy), **way)
 
-    def started(code=CALL, *, command=(sys.executable,), cache=kept):
+    def started(code=CALL, *, command=(sys.executable,), cache=cache_copy):
         variables = way | {"PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}", "NUMBA_CACHE_DIR": str(cache)}
         done = subprocess.run(
             [*command, "-c", START + code], env=os.environ | variables, capture_output=True, text=True, check=False
@@ -87,7 +87,7 @@ def run(empty, fork, tmp_path):
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    forked.kept, forked.started, forked.plain = kept, started, bool(way["ROCKING_PLAIN_NUMBA"])
+    forked.kept, forked.started, forked.plain = cache_copy, started, bool(way["ROCKING_PLAIN_NUMBA"])
     return forked
 
 
@@ -101,8 +101,8 @@ def truncated(content, share):
 
 
 def flipped(content, share):
-    place = int(share * (len(content) - 1))
-    return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
+    position = int(share * (len(content) - 1))
+    return content[:position] + bytes([content[position] ^ 1]) + content[position + 1 :]
 
 
 def test_other_processes_find_the_machine_code(run):
@@ -130,13 +130,13 @@ def test_machine_code_of_a_named_processor_is_found_on_another_machine(run, name
     assert run.started().split() == (["1", "0", "0"] if named else ["0", "1", "0"])
 
 
-PLACES = 0.5, 0.0, 0.98, 1.0 - 1e-9
-DAMAGE = [(share, *one) for share in PLACES for one in product(("index", "machine code"), (truncated, flipped))]
+SHARES = 0.5, 0.0, 0.98, 1.0 - 1e-9
+DAMAGE = [*product(SHARES, ("index", "machine code"), (truncated, flipped))]
 
 
-@pytest.mark.parametrize("given", but_long(DAMAGE, (0.5, "index", truncated), (0.5, "machine code", flipped)))
-def test_a_damaged_file_is_made_again_with_one_warning(run, given):
-    share, file, damage = given
+@pytest.mark.parametrize("case", but_long(DAMAGE, (0.5, "index", truncated), (0.5, "machine code", flipped)))
+def test_a_damaged_file_is_made_again_with_one_warning(run, case):
+    share, file, damage = case
     run()
     damaged = files_of(run.kept)[file]
     damaged.write_bytes(damage(damaged.read_bytes(), share))
@@ -213,8 +213,10 @@ import rocking
 from rocking._solver.kernels.batch import solve_batch
 assert rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.8, alpha=0.3).impacts > 0
 print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_batch.stats.cache_misses.values()))"""
-    kept = os.environ | {"NUMBA_CACHE_DIR": str(Path(kernel_cache.cache_folder()).parent)}
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=kept)
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(Path(kernel_cache.cache_folder()).parent)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=environment
+    )
     assert done.stdout.split() == [str(tmp_path / "rocking/__init__.py"), "1", "0"]
 
 
@@ -236,15 +238,15 @@ def digest_of(package):
     ],
 )
 def test_the_digest_of_the_folder_depends_on_kernels_and_their_imports(package, statement):
-    one, constants = package / "one.py", package / "inner" / "constants.py"
+    module, constants = package / "one.py", package / "inner" / "constants.py"
     imports = f"from rocking._numba.compilation import entry, kernel\n{statement}\n\n"
-    one.write_text(f"{imports}@kernel\ndef f(x): ...\n")
+    module.write_text(f"{imports}@kernel\ndef f(x): ...\n")
     constants.write_text("X = 1\n")
     (package / "other.py").write_text('def g(x): ...\n"""\nfrom rocking.one import f\n"""\n')
     first = digest_of(package)
     (package / "other.py").write_text("def g(x): return 1\n")  # holds no kernel
     assert digest_of(package) == first
-    one.write_text(f"{imports}@kernel\ndef f(x): return 1\n")
+    module.write_text(f"{imports}@kernel\ndef f(x): return 1\n")
     second = digest_of(package)
     assert second != first
     constants.write_text("X = 2\n")  # a constant of the machine code
@@ -261,10 +263,10 @@ def test_modules_with_compiled_code_import_only_what_the_digest_states():
     names = {
         (base or name).split(".")[0] for path in compiled for name, base, _ in imported_names(sources.syntax(path))
     }
-    assert names - sys.stdlib_module_names - {"rocking"} == {one.__name__ for one in kernel_cache.MADE_WITH}
+    assert names - sys.stdlib_module_names - {"rocking"} == {package.__name__ for package in kernel_cache.MADE_WITH}
 
 
-@pytest.mark.parametrize("name", [one.__name__ for one in kernel_cache.MADE_WITH])
+@pytest.mark.parametrize("name", [package.__name__ for package in kernel_cache.MADE_WITH])
 def test_the_digest_depends_on_the_versions_of_what_is_imported(package, name, monkeypatch):
     first = digest_of(package)
     monkeypatch.setattr(sys.modules[name], "__version__", "0.0")

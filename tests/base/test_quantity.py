@@ -25,7 +25,7 @@ from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS
 
 
-@pytest.mark.parametrize("parameter", GROUPS, ids=[one.name for one in GROUPS])
+@pytest.mark.parametrize("parameter", GROUPS, ids=[quantity.name for quantity in GROUPS])
 def test_interval_states_which_values_are_accepted(parameter):
     assert parameter.convert(parameter.lower) == parameter.lower
     for wrong in (parameter.lower - 1.0, math.nan, math.inf):
@@ -34,16 +34,16 @@ def test_interval_states_which_values_are_accepted(parameter):
         assert caught.value.allowed == f"{parameter.interval} [{parameter.unit}]"
 
 
-DECLARED = [one for one in vars(quantities).values() if isinstance(one, Quantity)]
+DECLARED = [quantity for quantity in vars(quantities).values() if isinstance(quantity, Quantity)]
 
 
-@pytest.mark.parametrize("one", DECLARED, ids=[one.name for one in DECLARED])
-def test_a_declaration_is_complete(one):
-    assert one.unit in UNITS or one.unit in ("", "bool")
-    assert one.meaning[0].islower() or one.meaning[0].isupper() != one.meaning[1].isupper()
-    assert not one.meaning.endswith(".")
-    if one.example and one is not SIDES:  # a word
-        assert one.lower <= one.number(one.example) <= one.upper
+@pytest.mark.parametrize("quantity", DECLARED, ids=[quantity.name for quantity in DECLARED])
+def test_a_declaration_is_complete(quantity):
+    assert quantity.unit in UNITS or quantity.unit in ("", "bool")
+    assert quantity.meaning[0].islower() or quantity.meaning[0].isupper() != quantity.meaning[1].isupper()
+    assert not quantity.meaning.endswith(".")
+    if quantity.example and quantity is not SIDES:  # a word
+        assert quantity.lower <= quantity.number(quantity.example) <= quantity.upper
 
 
 def test_one_declaration_reads_python_options_json_and_tables():
@@ -59,7 +59,7 @@ def test_one_declaration_reads_python_options_json_and_tables():
 
 
 @pytest.mark.parametrize(
-    ("one", "value", "words"),
+    ("quantity", "value", "words"),
     [
         (WIDTH, "0.4", "missing unit: write 0.4m"),
         (WIDTH, -1.0, r"allowed: \(0, inf\) \[m\]"),
@@ -69,10 +69,10 @@ def test_one_declaration_reads_python_options_json_and_tables():
         (ALPHA, 30.0, "write '30 deg'"),
     ],
 )
-def test_what_is_refused_has_its_name_its_value_and_what_is_allowed(one, value, words):
+def test_what_is_refused_has_its_name_its_value_and_what_is_allowed(quantity, value, words):
     with pytest.raises(InvalidArgumentError, match=words) as caught:
-        one.read(value)
-    assert (caught.value.parameter, caught.value.value) == (one.name, value)
+        quantity.read(value)
+    assert (caught.value.parameter, caught.value.value) == (quantity.name, value)
 
 
 def test_a_field_of_pydantic_has_the_declaration():

@@ -51,8 +51,8 @@ def tree(tmp_path: Path) -> Path:
     ],
 )  # fmt: skip
 def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> None:
-    found = SourceTree(tree).files(tree / script)
-    assert {path.relative_to(tree).as_posix() for path in found} == expected
+    files = SourceTree(tree).files(tree / script)
+    assert {path.relative_to(tree).as_posix() for path in files} == expected
 
 
 def test_imports_are_followed_to_the_packages_of_the_tree_alone(tree: Path) -> None:

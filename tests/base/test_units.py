@@ -68,8 +68,8 @@ def test_units_are_never_evaluated(text, unit):
 )  # fmt: skip
 def test_quantities_in_groups_are_converted(name, quantity):
     expected = rocking.peak_response("sine", **GROUPS).peak_rotation
-    found = rocking.peak_response("sine", **GROUPS | {name: quantity}).peak_rotation
-    assert 0.0 < expected == pytest.approx(found, rel=1e-12)
+    rotation = rocking.peak_response("sine", **GROUPS | {name: quantity}).peak_rotation
+    assert 0.0 < expected == pytest.approx(rotation, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -88,19 +88,19 @@ def test_arrays_of_quantities_are_converted(angles):
 
 def test_coordinates_of_labelled_texts_are_numbers():
     widths, peaks = xr.DataArray(["30 cm", "0.4 m"], dims="w"), xr.DataArray(["0.3 g", "5 m/s2"], dims="a")
-    found = rocking.RigidBody.from_size(widths, "1.6 m").response("sine", peak_acceleration=peaks, period="1 s")
-    assert found.sizes == {"w": 2, "a": 2}
-    np.testing.assert_allclose(found["left"], [0.15, 0.2], rtol=1e-15)
-    np.testing.assert_allclose(found["peak_acceleration"], [0.3 * 9.80665, 5.0], rtol=1e-15)
+    response = rocking.RigidBody.from_size(widths, "1.6 m").response("sine", peak_acceleration=peaks, period="1 s")
+    assert response.sizes == {"w": 2, "a": 2}
+    np.testing.assert_allclose(response["left"], [0.15, 0.2], rtol=1e-15)
+    np.testing.assert_allclose(response["peak_acceleration"], [0.3 * 9.80665, 5.0], rtol=1e-15)
 
 
 class OtherQuantity(np.ndarray):
     """An array with a unit as astropy has it: a subclass, `unit` and `value`."""
 
     def __new__(cls, values, unit):
-        made = np.asarray(values, dtype=float).view(cls)
-        made.unit = unit
-        return made
+        array = np.asarray(values, dtype=float).view(cls)
+        array.unit = unit
+        return array
 
     def to(self, unit):
         if (self.unit, unit) != ("deg", "rad"):
@@ -159,10 +159,10 @@ def test_blocks_of_quantities_hold_floats(sizes):
 @pytest.mark.parametrize("period", ["500 ms", QUANTITY(500, "ms"), 0.5])
 def test_ground_motions_of_quantities(peak, period):
     expected = BLOCK.response("sine", peak_acceleration=0.4 * 9.80665, period=0.5)
-    found = BLOCK.response("sine", peak_acceleration=peak, period=period, restitution="momentum")
-    assert found.rotation == pytest.approx(expected.rotation, rel=1e-12)
-    assert isinstance(found.peak_acceleration, float)
-    assert isinstance(found.period, float)
+    response = BLOCK.response("sine", peak_acceleration=peak, period=period, restitution="momentum")
+    assert response.rotation == pytest.approx(expected.rotation, rel=1e-12)
+    assert isinstance(response.peak_acceleration, float)
+    assert isinstance(response.period, float)
     history = BLOCK.history("sine", peak_acceleration=peak, period=period, duration="900 ms", samples=10)
     assert float(history["time"][-1]) == pytest.approx(0.9)
     spectrum = BLOCK.spectrum("sine", peak_acceleration=peak, period=QUANTITY([400, 500], "ms"))
@@ -170,9 +170,9 @@ def test_ground_motions_of_quantities(peak, period):
 
 
 def test_equivalent_blocks_of_quantities():
-    found = rocking.EquivalentBlock("10 deg", QUANTITY(2.0, "rad/s"), restitution="90 %", uplift_acceleration="0.1 g")
-    assert (found.alpha, found.frequency_parameter, found.momentum_restitution) == (math.radians(10.0), 2.0, 0.9)
-    assert found.uplift_acceleration == pytest.approx(0.980665, rel=1e-15)
+    block = rocking.EquivalentBlock("10 deg", QUANTITY(2.0, "rad/s"), restitution="90 %", uplift_acceleration="0.1 g")
+    assert (block.alpha, block.frequency_parameter, block.momentum_restitution) == (math.radians(10.0), 2.0, 0.9)
+    assert block.uplift_acceleration == pytest.approx(0.980665, rel=1e-15)
     arch = rocking.EquivalentBlock.masonry_arch(radius="1000 cm", thickness="1.5 m", embrace="157.5 deg", voussoirs=7)
     plain = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=math.radians(157.5), voussoirs=7)
     assert arch.alpha == pytest.approx(plain.alpha, rel=1e-14)
@@ -196,8 +196,8 @@ def test_texts_that_are_no_acceleration_say_what_is_allowed(text, error, message
     ids=str,
 )  # fmt: skip
 def test_a_bare_acceleration_that_looks_like_g_gives_a_warning(peak, warned):
-    found = BLOCK.response("sine", peak_acceleration=peak, period=0.5)
-    texts = [text for text in found.warnings if "if it was meant in g" in text]
+    response = BLOCK.response("sine", peak_acceleration=peak, period=0.5)
+    texts = [text for text in response.warnings if "if it was meant in g" in text]
     assert bool(texts) == warned
     if warned:
         assert texts[0].startswith(f"peak_acceleration = {float(peak):.4g} m/s2 is below the uplift acceleration 2.452")

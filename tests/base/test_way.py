@@ -58,8 +58,8 @@ def test_numba_with_other_private_names_compiles_without_them_and_without_a_warn
 ):
     (tmp_path / "small.py").write_text(CALL.format(change=f"TRIED = {TRIED}; {change}"))
     code = f"import runpy; runpy.run_path({str(tmp_path / 'small.py')!r})"
-    found = fork(code, NUMBA_CACHE_DIR=cache, ROCKING_PLAIN_NUMBA="")
-    assert found.split() == [str(plain), "6.0"]
+    result = fork(code, NUMBA_CACHE_DIR=cache, ROCKING_PLAIN_NUMBA="")
+    assert result.split() == [str(plain), "6.0"]
 
 
 def test_private_names_of_numba_are_in_one_file():
@@ -77,10 +77,12 @@ def test_private_names_of_numba_are_in_one_file():
 
 def test_the_tried_version_is_stated_at_the_requirement_and_not_older_than_the_lock():
     pyproject = (ROOT / "pyproject.toml").read_text()
-    (stated,) = re.findall(r'"numba>=[\d.]+", # up to ([\d.]+) ', pyproject)
-    assert tuple(map(int, stated.split("."))) == TRIED
+    (tried,) = re.findall(r'"numba>=[\d.]+", # up to ([\d.]+) ', pyproject)
+    assert tuple(map(int, tried.split("."))) == TRIED
     (least,) = (
-        one.removeprefix("numba>=") for one in tomllib.loads(pyproject)["project"]["dependencies"] if "numba>" in one
+        requirement.removeprefix("numba>=")
+        for requirement in tomllib.loads(pyproject)["project"]["dependencies"]
+        if "numba>" in requirement
     )
     (locked,) = re.findall(r"^numba==(\d+)\.(\d+)", (ROOT / "environment.lock").read_text(), re.M)
     assert tuple(map(int, least.split("."))) <= tuple(map(int, locked)) <= TRIED

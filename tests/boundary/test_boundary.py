@@ -38,24 +38,26 @@ def curves(boundary):
 def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     nodes = 61 if alpha is None else 41
     boundary = rocking.overturning_boundary(pulse, restitution=0.9, alpha=alpha, nodes=nodes)
-    s, omega, own, neighbour = curves(boundary)
+    s, omega, region, neighbour = curves(boundary)
     assert boundary.row_size.values.sum() == s.size
     assert s.size > 50
-    assert (own != neighbour).all()
+    assert (region != neighbour).all()
     # a vertex lies inside its own region, and one step of the resolution along one of the axes beyond it
-    here = region_code(rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha))
-    assert (here == own).mean() > 0.998  # exp(log omega) rounds
+    at_vertex = region_code(
+        rocking.peak_response(pulse, slenderness=s, frequency_ratio=omega, restitution=0.9, alpha=alpha)
+    )
+    assert (at_vertex == region).mean() > 0.998  # exp(log omega) rounds
     reach = 4 * RESOLUTION
     around = [(s + ds, omega * math.exp(dw)) for ds, dw in ((reach, 0), (-reach, 0), (0, reach), (0, -reach))]
     codes = [
         region_code(rocking.peak_response(pulse, slenderness=x, frequency_ratio=w, restitution=0.9, alpha=alpha))
         for x, w in around
     ]
-    changes = np.any([code != here for code in codes], axis=0)
+    changes = np.any([code != at_vertex for code in codes], axis=0)
     # the region of many impacts consists of layers, of which the outermost one can be too thin to be resolved
-    assert changes[own != UNCOUNTED].all()
+    assert changes[region != UNCOUNTED].all()
     assert changes.mean() > 0.998
-    assert np.any([code == own for code in [here, *codes]], axis=0).all()
+    assert np.any([code == region for code in [at_vertex, *codes]], axis=0).all()
     # the neighbour is next to it, or beyond regions that are too thin to be resolved
     steps = np.array([1.0, -1.0])[:, None, None] * np.array([reach, 1e-9, 1e-8, 1e-7, 3e-7, 1.0e-6, 3e-6])[:, None]
     beside = region_code(
@@ -65,20 +67,20 @@ def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     )
     # but for the point that a curve repeats where it continues an outline
     first = np.cumsum(boundary.row_size.values)[:-1][np.diff(boundary.outline.values) == 0]
-    known = np.delete((beside == neighbour).any(axis=(0, 1)), first)
-    assert known.mean() > (0.98 if pulse == "c1" else 0.998)  # c1: 0.983 and more, all others 1
+    is_neighbour = np.delete((beside == neighbour).any(axis=(0, 1)), first)
+    assert is_neighbour.mean() > (0.98 if pulse == "c1" else 0.998)  # c1: 0.983 and more, all others 1
 
 
 def test_sine_against_the_closed_forms():
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.9, frequency_ratio=(1.5, 8.0), slenderness=(0.05, 0.95), nodes=81
     )
-    s, omega, own, neighbour = curves(boundary)
+    s, omega, region, neighbour = curves(boundary)
     closed = paper.overturning_amplitudes(omega, 0.9)
-    directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
+    directly = (region == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
     assert directly.sum() > 40
     np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
-    after_one = (own == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
+    after_one = (region == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
     assert after_one.sum() > 40
     gap = np.fmin(
         np.abs(s[after_one] - 1 / closed.overturns_from[after_one]),
@@ -96,9 +98,9 @@ def test_the_thin_band_of_survival_between_two_ways_of_overturning_is_seen(alpha
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.85, alpha=alpha, frequency_ratio=(0.5, 1.0), slenderness=(0.6, 1.0), nodes=61
     )
-    s, omega, own, neighbour = curves(boundary)
-    directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
-    after_one = (own == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
+    s, omega, region, neighbour = curves(boundary)
+    directly = (region == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
+    after_one = (region == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
     assert directly.sum() > 20
     assert after_one.sum() > 20
     if alpha is None:
@@ -130,13 +132,13 @@ def test_a_thin_tongue_is_one_curve(alpha):
     ],
 )
 def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha, restitution):
-    found = compare(pulse, alpha, nodes=201, lines=25, restitution=restitution, ratios=(0.3, 10.0))
-    assert found["crossings"] > 60
-    assert found["wrong"] == 0
+    deviations = compare(pulse, alpha, nodes=201, lines=25, restitution=restitution, ratios=(0.3, 10.0))
+    assert deviations["crossings"] > 60
+    assert deviations["wrong"] == 0
     # thresholds of regions that the nodes do not show: all after many impacts, narrower than the finer nodes are apart
-    assert found["few"] == 0
-    assert found["widest"] < 1.5e-3
-    assert found["unlisted"] <= (0.05 if restitution < 0.9 else 0.12) * found["crossings"]
+    assert deviations["few"] == 0
+    assert deviations["widest"] < 1.5e-3
+    assert deviations["unlisted"] <= (0.05 if restitution < 0.9 else 0.12) * deviations["crossings"]
 
 
 def test_a_curve_goes_on_to_the_edge_of_the_window():
@@ -144,8 +146,8 @@ def test_a_curve_goes_on_to_the_edge_of_the_window():
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.85, frequency_ratio=(1.0, 6.0), slenderness=(0.3, 0.95), nodes=31
     )
-    s, omega, own, neighbour = curves(boundary)
-    directly = (own == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
+    s, omega, region, neighbour = curves(boundary)
+    directly = (region == Outcome.OVERTURNED_DIRECTLY) & (neighbour == 0)
     edge = omega[directly][np.argmin(s[directly])]
     assert 0.3 <= s[directly].min() < 0.3 + 1e-3
     closed = paper.overturning_amplitudes(edge * math.exp(2 * END), 0.85)
@@ -178,7 +180,7 @@ def test_bands_that_are_not_drawn_on_a_line_of_the_grid_are_thin():
         "c2", **case, frequency_ratio=(0.45, 0.6), slenderness=(0.92, 0.96), nodes=41
     )
     s, omega, _, neighbour = curves(boundary)
-    stated, widest = boundary.thinnest_uncounted_region, 0.0  # between the lines wider ones are missing
+    thinnest, widest = boundary.thinnest_uncounted_region, 0.0  # between the lines wider ones are missing
     x = np.linspace(0.9201, 0.9599, 20_001)
     for line in np.geomspace(0.45, 0.6, 41)[2:-1:4]:  # of the grid, whose changes of outcome are all vertices
         drawn = np.unique(s[(np.abs(omega / line - 1) < 1e-9) & (neighbour == 0)].round(11))
@@ -186,7 +188,7 @@ def test_bands_that_are_not_drawn_on_a_line_of_the_grid_are_thin():
         wrong = falls != (falls[0] ^ (np.searchsorted(drawn, x) - np.searchsorted(drawn, x[0])) % 2 == 1)
         ends = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]]).astype(int)))
         widest = max(widest, *np.diff(ends)[::2] * (x[1] - x[0]))
-    assert 0.0 < widest < UNCOUNTED_THINNEST < stated
+    assert 0.0 < widest < UNCOUNTED_THINNEST < thinnest
 
 
 @pytest.mark.parametrize(("pulse", "thinnest"), [("c2", None), ("cosine", 1e-6)])
@@ -210,34 +212,34 @@ def test_islands_are_drawn():
 @pytest.mark.parametrize("pulse", ["sine", "cosine", "c1"])
 def test_thresholds_separate_the_outcomes(pulse, alpha):
     for omega in (1.0, 2.5, 5.0):
-        found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
-        assert (np.diff(found.amplitude) > 0).all()
-        assert (np.diff(found.overturns_above.astype(int)) != 0).all()  # the outcome alternates
-        assert found.overturns_above[0]
-        s = 1 / found.amplitude
+        thresholds = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.9, alpha=alpha)
+        assert (np.diff(thresholds.amplitude) > 0).all()
+        assert (np.diff(thresholds.overturns_above.astype(int)) != 0).all()  # the outcome alternates
+        assert thresholds.overturns_above[0]
+        s = 1 / thresholds.amplitude
         below, above = (
             rocking.peak_response(pulse, slenderness=s + side * RESOLUTION * 3, frequency_ratio=omega, restitution=0.9,
                                   alpha=alpha)
             for side in (1, -1)
         )  # fmt: skip
-        np.testing.assert_array_equal(above.overturned, found.overturns_above)
-        np.testing.assert_array_equal(below.overturned, ~found.overturns_above)
-        falls = np.where(found.overturns_above, above.outcome, below.outcome)
-        np.testing.assert_array_equal(falls, found.outcome)
-        impacts = np.where(found.overturns_above, above.impacts, below.impacts)
-        np.testing.assert_array_equal(impacts, found.impacts)
+        np.testing.assert_array_equal(above.overturned, thresholds.overturns_above)
+        np.testing.assert_array_equal(below.overturned, ~thresholds.overturns_above)
+        falls = np.where(thresholds.overturns_above, above.outcome, below.outcome)
+        np.testing.assert_array_equal(falls, thresholds.outcome)
+        impacts = np.where(thresholds.overturns_above, above.impacts, below.impacts)
+        np.testing.assert_array_equal(impacts, thresholds.impacts)
 
 
 @pytest.mark.long
 def test_thresholds_of_a_block_that_strikes_thousands_of_times():
     # when each of the thousands of numbers of impacts was a region of its own, this took minutes
     case = {"frequency_ratio": 2.062, "restitution": 1.0}
-    found = rocking.thresholds("ricker", **case, highest=2.26)  # that of the block is 2.24
-    assert found.impacts.max() > MOST_COUNTED
-    assert (found.overturns_above[1:] != found.overturns_above[:-1]).all()
-    beyond = np.where(found.overturns_above, 2.0, -2.0) * ELASTIC_RESOLUTION
+    thresholds = rocking.thresholds("ricker", **case, highest=2.26)  # that of the block is 2.24
+    assert thresholds.impacts.max() > MOST_COUNTED
+    assert (thresholds.overturns_above[1:] != thresholds.overturns_above[:-1]).all()
+    beyond = np.where(thresholds.overturns_above, 2.0, -2.0) * ELASTIC_RESOLUTION
     inside, outside = (
-        rocking.peak_response("ricker", slenderness=1 / found.amplitude + step, **case) for step in (0.0, beyond)
+        rocking.peak_response("ricker", slenderness=1 / thresholds.amplitude + step, **case) for step in (0.0, beyond)
     )
     assert inside.overturned.all()
     assert not outside.overturned.any()
@@ -279,8 +281,8 @@ def test_wrong_windows(argument, value):
 
 def test_two_threads_give_the_same_curves():
     case = {"restitution": 0.9, "alpha": 0.2, "nodes": 101}
-    one, two = (rocking.overturning_boundary("sine", **case, threads=threads) for threads in (1, 2))
-    assert one.identical(two)
+    single, double = (rocking.overturning_boundary("sine", **case, threads=threads) for threads in (1, 2))
+    assert single.identical(double)
 
 
 @pytest.mark.parametrize(("thinnest", "regions"), [(8e-4, [0, 1, 2, 3, 4]), (2e-3, [0, 1, 3, 4])])

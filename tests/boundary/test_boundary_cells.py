@@ -63,9 +63,9 @@ def test_cells_of_a_curve(seed):
     lines = [wavy_line(rng) for _ in range(2)]
     crossed = crossed_cells(curves(lines), 0.0, ROWS, COLUMNS)
     held = [cells_on_the_line(line) for line in lines]
-    assert min(each.sum() for each in held) > 10
-    for each in held:
-        assert not (each & ~crossed).any()
+    assert min(cells.sum() for cells in held) > 10
+    for cells in held:
+        assert not (cells & ~crossed).any()
     assert not (crossed & ~grown(held[0] | held[1])).any()  # in particular none between one curve and the next
 
 

@@ -13,11 +13,11 @@ ANGLES_DEG = (0.0, 10.0, 20.0)
 
 @pytest.fixture(scope="module")
 def parts() -> list[xr.Dataset]:
-    made = []
+    boundaries = []
     for alpha in np.radians(ANGLES_DEG):
         curves = overturning_boundary("sine", restitution=0.85, alpha=alpha or None, nodes=21)
-        made.append(curves.assign(alpha=("curve", np.full(curves.sizes["curve"], alpha))))
-    return made
+        boundaries.append(curves.assign(alpha=("curve", np.full(curves.sizes["curve"], alpha))))
+    return boundaries
 
 
 def test_joined_curves_come_out_again_as_they_went_in(parts: list[xr.Dataset]) -> None:

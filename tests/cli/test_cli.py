@@ -112,8 +112,8 @@ def test_boundary_in_three_formats():
     assert (min(result["period"]), max(result["period"])) == pytest.approx((0.4, 0.8))
     point = int(np.argmin(np.abs(np.array(result["period"]) - 0.6)))
     period, acceleration = result["period"][point], result["peak_acceleration"][point]
-    found = BLOCK.response("sine", peak_acceleration=4.0, period=period)
-    assert min(abs(change.value / acceleration - 1.0) for change in found.thresholds) < 1e-9
+    response = BLOCK.response("sine", peak_acceleration=4.0, period=period)
+    assert min(abs(change.value / acceleration - 1.0) for change in response.thresholds) < 1e-9
     assert len(read_csv(run(*options, "--format=csv"))) == len(result["period"])
     assert run(*options).splitlines()[0].split()[:2] == ["curve", "period"]
 
@@ -173,14 +173,14 @@ def test_rows_that_cannot_be_read_are_named_and_the_others_solved(tmp_path):
     command = ["response", "--pulse", "sine", str(path), "--columns", "Breite=width", "--decimal", ","]
     printed = CliRunner().invoke(app, [*command, "--format=csv"])
     assert printed.exit_code == 2
-    said = [line.partition(": ")[0].removeprefix(f"{path}, ") for line in printed.stderr.splitlines()]
-    assert said == ["row 3, width", "row 4, peak_acceleration"]
+    rows = [line.partition(": ")[0].removeprefix(f"{path}, ") for line in printed.stderr.splitlines()]
+    assert rows == ["row 3, width", "row 4, peak_acceleration"]
     assert "'big'; allowed: one number" in printed.stderr
     (row,) = csv.DictReader(io.StringIO(printed.stdout))
     assert list(row.values())[:7] == ["A 1", "20 cm", "0,8", "0,4", "500 ms", 'clay; "red"', "?"]
-    found = rocking.Block(0.2, 0.8).response("sine", peak_acceleration="0.4 g", period=0.5)
-    assert (row["outcome (given)"], row["outcome"]) == ("?", found.outcome.name)
-    assert float(row["uplift_acceleration [m/s2]"]) == pytest.approx(found.uplift_acceleration, rel=1e-12)
+    response = rocking.Block(0.2, 0.8).response("sine", peak_acceleration="0.4 g", period=0.5)
+    assert (row["outcome (given)"], row["outcome"]) == ("?", response.outcome.name)
+    assert float(row["uplift_acceleration [m/s2]"]) == pytest.approx(response.uplift_acceleration, rel=1e-12)
     table = CliRunner().invoke(app, command).stdout
     assert table.splitlines()[1].split()[:7] == ["A", "1", "-", "-", "-", "-", "yes"]
     answer = json.loads(CliRunner().invoke(app, [*command, "--format=json"]).stdout)
@@ -203,8 +203,8 @@ def test_options_name_their_units_and_shells_complete_names():
     assert re.search(r"--width +\[m\]", text)
     assert re.search(r"--peak-acceleration +\[m/s2\]", text)
     completion = {"_ROCKING_COMPLETE": "complete_bash", "COMP_WORDS": "rocking response --pulse ric", "COMP_CWORD": "3"}
-    found = CliRunner().invoke(app, [], env=completion, prog_name="rocking")
-    assert found.stdout.split() == ["ricker", "ricker_antisymmetric"]
+    completed = CliRunner().invoke(app, [], env=completion, prog_name="rocking")
+    assert completed.stdout.split() == ["ricker", "ricker_antisymmetric"]
 
 
 def test_no_help_is_cut_off_in_a_window_of_80_columns():
@@ -214,8 +214,8 @@ def test_no_help_is_cut_off_in_a_window_of_80_columns():
             yield from commands(command, *names, name)
 
     for names in commands(get_command(app)):
-        found = CliRunner().invoke(app, [*names, "--help"], env={"COLUMNS": "80", "TERMINAL_WIDTH": "80"})
-        assert "…" not in found.stdout, names
+        printed = CliRunner().invoke(app, [*names, "--help"], env={"COLUMNS": "80", "TERMINAL_WIDTH": "80"})
+        assert "…" not in printed.stdout, names
 
 
 def test_exit_codes_are_those_of_the_help(monkeypatch, tmp_path):
@@ -226,14 +226,14 @@ def test_exit_codes_are_those_of_the_help(monkeypatch, tmp_path):
         return CliRunner().invoke(app, list(arguments)).exit_code
 
     text = " ".join(run("--help").split())
-    stated = [int(one) for one in re.findall(r"[:;] (\d+) ", text.partition("Exit codes")[2])]
+    documented = [int(digits) for digits in re.findall(r"[:;] (\d+) ", text.partition("Exit codes")[2])]
     monkeypatch.setitem(sys.modules, "python_calamine", None)
     sheet = tmp_path / "a.xlsx"
     sheet.write_bytes(b"")
     assert code("assess", str(sheet), "--pga", "0.3g", "--pgv", "0.3m/s") == 1
-    found = [code("response", *WHOLE), code("response", "--pulse", "sine", str(sheet)), code("respons")]
+    codes = [code("response", *WHOLE), code("response", "--pulse", "sine", str(sheet)), code("respons")]
     monkeypatch.setattr("rocking._cli.printing.print_response", interrupted)
-    assert [*found, code("response", *WHOLE)] == stated == [0, 1, 2, 130]
+    assert [*codes, code("response", *WHOLE)] == documented == [0, 1, 2, 130]
 
 
 def test_block_that_lifts_off_has_no_friction_demand():
@@ -357,9 +357,9 @@ def test_a_file_that_is_missing_is_no_such_file(words):
 )
 def test_bodies_of_other_kinds(text):
     motion = ("--pulse", "sine", "--peak-acceleration", "0.4 g", "--period", "0.5s")
-    found = json.loads(run("response", "--body", text, *motion, "--format", "json"))
+    response = json.loads(run("response", "--body", text, *motion, "--format", "json"))
     expected = rocking.body(text).response("sine", peak_acceleration="0.4 g", period="0.5 s")
-    assert found["peak_rotation"] == expected.summary()["peak_rotation"]
+    assert response["peak_rotation"] == expected.summary()["peak_rotation"]
     moved = rocking.body(text).history("sine", peak_acceleration="0.4 g", period="0.5 s")
     history = json.loads(run("history", "--body", text, *motion, "--format", "json"))
     assert history["rotation"] == moved["rotation"].values.tolist()

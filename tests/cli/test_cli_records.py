@@ -27,11 +27,11 @@ OFFSET = ["--body", "offset_mass(width=0.5m, height=2m, offset=3cm)"]
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
     """A configuration of two records and few levels."""
-    given = yaml.safe_load((ROOT / "workflow/config/suite.yaml").read_text())["suite"]
-    given |= {"intensity": [2.0, 4.0, 6.0, 9.0], "map": None, "blocks": given["blocks"][:1]}
-    given["records"] |= {"folder": str(ROOT / "workflow/motions"), "pattern": "synthetic_3[12].csv"}
+    suite = yaml.safe_load((ROOT / "workflow/config/suite.yaml").read_text())["suite"]
+    suite |= {"intensity": [2.0, 4.0, 6.0, 9.0], "map": None, "blocks": suite["blocks"][:1]}
+    suite["records"] |= {"folder": str(ROOT / "workflow/motions"), "pattern": "synthetic_3[12].csv"}
     path = tmp_path_factory.mktemp("suite") / "suite.json"
-    path.write_text(json.dumps(given))
+    path.write_text(json.dumps(suite))
     return path
 
 
@@ -83,19 +83,21 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
     path = tmp_path / "plain.txt"
     path.write_text("\n".join(map(repr, (motion.acceleration * 100.0).tolist())))
     unit, step, column = ["--unit", "cm/s2"], ["--time-step", "10 ms"], ["--acceleration", "1"]
-    found = json.loads(run("record", str(path), *SIZES, *unit, *step, *column, "--no-thresholds", "--format=json"))
+    response = json.loads(run("record", str(path), *SIZES, *unit, *step, *column, "--no-thresholds", "--format=json"))
     expected = rocking.Block(0.5, 2.0).response(motion, thresholds=False)
-    assert found["peak_rotation"] == pytest.approx(expected.peak_rotation, rel=1e-6)
+    assert response["peak_rotation"] == pytest.approx(expected.peak_rotation, rel=1e-6)
     assert "such as --acceleration 1 --time-step 0.01 --unit ..." in refused(
         "record", str(path), *SIZES, *step, *column
     )
-    said = refused("record", str(path), *SIZES, *unit)
-    assert "--time-step" in said  # not the name in Python
+    message = refused("record", str(path), *SIZES, *unit)
+    assert "--time-step" in message  # not the name in Python
 
 
 def test_baseline_is_removed_on_request_only():
-    each = ([], ["--baseline-order", "1"])
-    plain, corrected = (json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in each)
+    option_lists = ([], ["--baseline-order", "1"])
+    plain, corrected = (
+        json.loads(run("record", MOTION, *SIZES, *options, "--format=json")) for options in option_lists
+    )
     assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
 
 
@@ -145,10 +147,10 @@ def test_friction_restitution_and_sampling_in_three_formats(small):
 def test_table_is_what_the_configuration_asks_for(small, tmp_path):
     rows = read_csv(run("fragility", str(small), "--format=csv", "--table", "curves"))
     assert len(rows) == 3 * 2
-    given = json.loads(small.read_text())
-    del given["sensitivity"]
+    suite = json.loads(small.read_text())
+    del suite["sensitivity"]
     path = tmp_path / "plain.yaml"
-    path.write_text(yaml.safe_dump({"title": "a suite", "suite": given}))
+    path.write_text(yaml.safe_dump({"title": "a suite", "suite": suite}))
     assert run("fragility", str(path), "--format=csv") == run("fragility", str(small), "--format=csv")
     assert "no sensitivity" in refused("fragility", str(path), "--format=csv", "--table", "sensitivity")
     assert "sensitivity" not in json.loads(run("fragility", str(path), "--format=json"))
@@ -199,31 +201,31 @@ def test_remarks_of_a_suite_are_warnings(small, tmp_path):
     folder.mkdir()
     for name in ("first", "second"):
         (folder / f"{name}.at2").write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
-    given = json.loads(small.read_text())
-    given["records"] |= {"folder": str(folder), "pattern": "*.at2", "format": None, "baseline_order": 1}
+    suite = json.loads(small.read_text())
+    suite["records"] |= {"folder": str(folder), "pattern": "*.at2", "format": None, "baseline_order": 1}
     path = tmp_path / "suite.json"
-    path.write_text(json.dumps(given))
-    found = CliRunner().invoke(app, ["fragility", str(path)])
-    assert found.exit_code == 0
-    assert "warning: first: the file holds 100 samples, its header states 101\n" in found.stderr
+    path.write_text(json.dumps(suite))
+    printed = CliRunner().invoke(app, ["fragility", str(path)])
+    assert printed.exit_code == 0
+    assert "warning: first: the file holds 100 samples, its header states 101\n" in printed.stderr
 
 
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     motion = rocking.read_record(MOTION, vertical=UP)
     expected = rocking.Block(0.5, 2.0).response(motion, scale=0.9)
     options = [*SIZES, "--scale=0.9", "--format=json"]
-    found = json.loads(run("record", MOTION, *options, "--vertical", UP))
-    assert found["peak_rotation"] == float(expected.peak_rotation)
-    assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
+    response = json.loads(run("record", MOTION, *options, "--vertical", UP))
+    assert response["peak_rotation"] == float(expected.peak_rotation)
+    assert response["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
     path = tmp_path / "both.csv"
     rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
     path.write_text("time [s],h [m/s2],up [m/s2]\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows))
     same = json.loads(run("record", str(path), *options, "--acceleration", "h", "--vertical", "up"))
-    assert same["peak_rotation"] == found["peak_rotation"]
+    assert same["peak_rotation"] == response["peak_rotation"]
     assert "--vertical" in refused("record", MOTION, *SIZES, "--vertical", "none.at2")
-    said = refused("record", MOTION, *SIZES, "--vertical", UP, "--scale", "4")
-    assert "--scale" in said
-    assert "-g at " in said
+    message = refused("record", MOTION, *SIZES, "--vertical", UP, "--scale", "4")
+    assert "--scale" in message
+    assert "-g at " in message
 
 
 def test_the_worst_direction_of_two_components(tmp_path):
@@ -235,22 +237,22 @@ def test_the_worst_direction_of_two_components(tmp_path):
     east, north, up = (str(tmp_path / f"{name}.csv") for name in ("HNE", "HNN", "HNZ"))
     first, second = (rocking.read_record(path, vertical=up) for path in (east, north))
     options = [*SIZES, "--second", north, "--vertical", up, "--format=json"]
-    found = json.loads(run("record", east, *options))
+    response = json.loads(run("record", east, *options))
 
     def along(degrees):
         angle = math.radians(degrees)
         values = math.cos(angle) * first.acceleration + math.sin(angle) * second.acceleration
         return rocking.Record(values, first.time_step, "m/s2", vertical=first.vertical)
 
-    turned = rocking.Block(0.5, 2.0).response(along(found["direction_deg"]))
-    assert found["overturning_scale"] == pytest.approx(turned.overturning_scale)
+    turned = rocking.Block(0.5, 2.0).response(along(response["direction_deg"]))
+    assert response["overturning_scale"] == pytest.approx(turned.overturning_scale)
     body = rocking.RigidBody.from_size(0.5, 2.0, offset=0.05)
     wide = ["--body", "offset_mass(width=0.5m, height=2m, offset=5cm)"]
     quick = json.loads(run("record", east, *options[len(SIZES) :], *wide, "--no-thresholds", "--scale=0.7"))
     every = [body.response(along(15 * k), scale=0.7, thresholds=False) for k in range(24)]
-    assert quick["overturned"] == any(one.overturned for one in every)
+    assert quick["overturned"] == any(single.overturned for single in every)
     if not quick["overturned"]:
-        assert quick["peak_rotation_deg"] == pytest.approx(max(math.degrees(one.rotation) for one in every))
+        assert quick["peak_rotation_deg"] == pytest.approx(max(math.degrees(single.rotation) for single in every))
     assert "--second" in refused("record", east, *SIZES, "--second", str(motions / "napa_HNN.csv"))
 
 
@@ -258,12 +260,12 @@ def test_the_motion_under_a_record_as_numbers_with_forces_of_a_known_mass():
     block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
     options = ("--history", "--samples=50")
     expected = block.history(motion, scale=1.0, samples=50, contact=True)
-    found = json.loads(run("record", MOTION, *SIZES, *options, "--mass=200kg", "--format=json"))
-    np.testing.assert_array_equal(found["time"], expected["time"])
-    np.testing.assert_array_equal(found["rotation"], expected["rotation"])
-    np.testing.assert_allclose(found["normal_force"], 200.0 * block.gravity * expected["normal_reaction"])
+    history = json.loads(run("record", MOTION, *SIZES, *options, "--mass=200kg", "--format=json"))
+    np.testing.assert_array_equal(history["time"], expected["time"])
+    np.testing.assert_array_equal(history["rotation"], expected["rotation"])
+    np.testing.assert_allclose(history["normal_force"], 200.0 * block.gravity * expected["normal_reaction"])
     mirrored = json.loads(run("record", MOTION, *SIZES, *options, "--mirrored", "--format=json"))
-    np.testing.assert_allclose(mirrored["rotation"], np.negative(found["rotation"]), atol=1e-12)
+    np.testing.assert_allclose(mirrored["rotation"], np.negative(history["rotation"]), atol=1e-12)
     assert "normal_force" not in mirrored
     (first, *_) = read_csv(run("record", MOTION, *OFFSET, *options, "--mass=200kg", "--format=csv"))
     assert {"edge", "normal_reaction", "horizontal_force", "vertical_acceleration"} <= first.keys()
@@ -278,7 +280,7 @@ def test_options_of_the_motion_belong_to_it(options, option):
 
 def test_the_mirrored_record_has_thresholds_of_its_own():
     body, motion = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03), rocking.read_record(MOTION)
-    found = json.loads(run("record", MOTION, *OFFSET, "--mirrored", "--format=json"))
+    response = json.loads(run("record", MOTION, *OFFSET, "--mirrored", "--format=json"))
     expected = body.thresholds(motion.mirrored()).value.tolist()
-    assert [change["scale"] for change in found["thresholds"]] == expected
-    assert found["record"].endswith(", mirrored")
+    assert [change["scale"] for change in response["thresholds"]] == expected
+    assert response["record"].endswith(", mirrored")

@@ -38,14 +38,14 @@ def cube() -> xr.Dataset:
 
 
 @pytest.fixture
-def written(cube: xr.Dataset, tmp_path: Path) -> Path:
+def cube_file(cube: xr.Dataset, tmp_path: Path) -> Path:
     path = tmp_path / "eta-0.85.nc"
     write_dataset(cube, path)
     return path
 
 
-def test_spectrum_follows_cf(written: Path) -> None:
-    assert complaints(written) == []
+def test_spectrum_follows_cf(cube_file: Path) -> None:
+    assert complaints(cube_file) == []
 
 
 def test_a_file_holds_the_samples_of_its_pulse_and_follows_cf(tmp_path: Path) -> None:
@@ -70,8 +70,8 @@ def test_products_follow_cf_and_acdd(smoke_results: Path, product: str) -> None:
     assert remaining == []
 
 
-def test_cube_round_trip(cube: xr.Dataset, written: Path) -> None:
-    back = read_spectrum(written)
+def test_cube_round_trip(cube: xr.Dataset, cube_file: Path) -> None:
+    back = read_spectrum(cube_file)
     xr.testing.assert_equal(back, cube)
     assert back.peak_rotation.dtype == np.float64
     assert {name: back[name].dtype.str[1:] for name in VARIABLES} == {
@@ -80,13 +80,15 @@ def test_cube_round_trip(cube: xr.Dataset, written: Path) -> None:
     assert back.attrs["title"] == cube.attrs["title"]
 
 
-def test_equal_content_gives_equal_bytes(written: Path, tmp_path: Path) -> None:
-    write_dataset(read_spectrum(written), tmp_path / "again.nc")
-    assert (tmp_path / "again.nc").read_bytes() == written.read_bytes()
+def test_equal_content_gives_equal_bytes(cube_file: Path, tmp_path: Path) -> None:
+    write_dataset(read_spectrum(cube_file), tmp_path / "again.nc")
+    assert (tmp_path / "again.nc").read_bytes() == cube_file.read_bytes()
 
 
-def test_failed_write_keeps_the_old_file_only(cube: xr.Dataset, written: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = written.read_bytes()
+def test_failed_write_keeps_the_old_file_only(
+    cube: xr.Dataset, cube_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = cube_file.read_bytes()
 
     def fail(_: xr.Dataset, path: Path, **__: object) -> None:
         Path(path).write_bytes(b"half a file")
@@ -94,33 +96,33 @@ def test_failed_write_keeps_the_old_file_only(cube: xr.Dataset, written: Path, m
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="disk full"):
-        write_dataset(cube, written)
-    assert written.read_bytes() == before
-    assert list(written.parent.iterdir()) == [written]
+        write_dataset(cube, cube_file)
+    assert cube_file.read_bytes() == before
+    assert list(cube_file.parent.iterdir()) == [cube_file]
 
 
-def test_truncated_file(written: Path) -> None:
-    content = written.read_bytes()
-    written.write_bytes(content[: len(content) // 2])
+def test_truncated_file(cube_file: Path) -> None:
+    content = cube_file.read_bytes()
+    cube_file.write_bytes(content[: len(content) // 2])
     with pytest.raises(DatasetError, match="damaged"):
-        read_dataset(written)
+        read_dataset(cube_file)
 
 
-def test_flipped_bits(written: Path) -> None:
-    whole = written.read_bytes()
+def test_flipped_bits(cube_file: Path) -> None:
+    intact = cube_file.read_bytes()
     rng = np.random.default_rng(20120404)
-    for place in rng.choice(len(whole), size=60, replace=False):
-        content = bytearray(whole)
-        content[place] ^= 0xFF
-        written.write_bytes(content)
+    for position in rng.choice(len(intact), size=60, replace=False):
+        content = bytearray(intact)
+        content[position] ^= 0xFF
+        cube_file.write_bytes(content)
         with pytest.raises(DatasetError, match="damaged"):
-            read_dataset(written)
+            read_dataset(cube_file)
 
 
-def test_other_readers_ignore_the_digest_at_the_end(written: Path) -> None:
-    ours = read_dataset(written)
+def test_other_readers_ignore_the_digest_at_the_end(cube_file: Path) -> None:
+    ours = read_dataset(cube_file)
     for engine in ("netcdf4", "h5netcdf"):
-        with xr.open_dataset(written, engine=engine, decode_times=False) as theirs:
+        with xr.open_dataset(cube_file, engine=engine, decode_times=False) as theirs:
             xr.testing.assert_identical(theirs.load(), ours)
 
 
@@ -184,7 +186,7 @@ def lagrange(t: np.ndarray) -> list[np.ndarray]:
     ]
 
 
-def test_threads_read_files_at_the_same_time(written: Path) -> None:
+def test_threads_read_files_at_the_same_time(cube_file: Path) -> None:
     # In another process: without the lock, the netCDF library ends the process within a second.
     program = (
         "import sys, threading\n"
@@ -202,5 +204,5 @@ def test_threads_read_files_at_the_same_time(written: Path) -> None:
         "    read_by_all = list(pool.map(read, range(80)))\n"
         "print(len(read_by_all))"
     )
-    done = subprocess.run([sys.executable, "-c", program, str(written)], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", program, str(cube_file)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "80\n"), done.stderr

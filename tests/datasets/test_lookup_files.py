@@ -22,16 +22,16 @@ POINT = {"slenderness": 0.7, "frequency_ratio": 7.0, "restitution": 0.85}
 
 @pytest.fixture(scope="module")
 def contents(tmp_path_factory):
-    made = spectrum(
+    cube = spectrum(
         "sine", restitution=0.85, slenderness=np.linspace(0.6, 0.8, 21), frequency_ratio=np.geomspace(6.0, 8.0, 21)
     )
-    found = []
+    files = []
     for number in (1, 2):
         path = tmp_path_factory.mktemp("made") / "cube.nc"
-        write_dataset(made.assign_attrs(version=number), path)
-        found.append(path.read_bytes())
-    assert len(found[0]) == len(found[1])
-    return found
+        write_dataset(cube.assign_attrs(version=number), path)
+        files.append(path.read_bytes())
+    assert len(files[0]) == len(files[1])
+    return files
 
 
 @pytest.fixture
@@ -128,7 +128,9 @@ def test_an_angle_is_read_when_it_is_needed_and_from_the_version_that_was_opened
     path = tmp_path / "spectra" / "sine" / "eta-0.85.nc"
     write_dataset(spectrum("sine", restitution=0.85, **axes), path, chunks={"alpha": 1})
     read, layer = [], rocking._lookup.cube_slice._layer_of_file
-    monkeypatch.setattr(rocking._lookup.cube_slice, "_layer_of_file", lambda *one: read.append(one[-1]) or layer(*one))
+    monkeypatch.setattr(
+        rocking._lookup.cube_slice, "_layer_of_file", lambda *arguments: read.append(arguments[-1]) or layer(*arguments)
+    )
     cube = rocking.open_cube(path)
     assert read == []
     assert cube.response(**POINT, alpha=0.1).from_cube
@@ -274,7 +276,7 @@ def test_memory_is_limited_to_the_cubes_that_were_used_last(cubes, path, monkeyp
         write_dataset(other, path.with_name(f"eta-{eta:.2f}.nc"))
     sizes = {eta: cubes.slice_at("sine", eta).layers.nbytes for eta in (0.86, 0.85, 0.86)}
     monkeypatch.setattr(rocking._lookup.collection, "MAX_BYTES", sum(sizes.values()))
-    kept = cubes.slice_at("sine", 0.86)  # used after that of 0.85
+    last_used = cubes.slice_at("sine", 0.86)  # used after that of 0.85
     cubes.slice_at("sine", 0.87)
     assert not is_open(cubes)
-    assert cubes.slice_at("sine", 0.86) is kept
+    assert cubes.slice_at("sine", 0.86) is last_used

@@ -47,22 +47,22 @@ def mutated(content: bytes, dice: random.Random) -> bytes:
     """Return the content with one to four random changes."""
     data = bytearray(content)
     for _ in range(dice.randint(1, 4)):
-        place = dice.randrange(len(data) + 1)
+        position = dice.randrange(len(data) + 1)
         length = dice.choice([1, 1, 2, 8, 60])
         kind = dice.randrange(6)
         if kind == 0:
-            data[place : place + 1] = bytes([dice.randrange(256)])
+            data[position : position + 1] = bytes([dice.randrange(256)])
         elif kind == 1:
-            del data[place : place + length]
+            del data[position : position + length]
         elif kind == 2:
-            data[place : place + dice.choice([0, 0, 4])] = dice.choice(TOKENS)
+            data[position : position + dice.choice([0, 0, 4])] = dice.choice(TOKENS)
         elif kind == 3:
-            data[place:place] = data[place : place + length]
+            data[position:position] = data[position : position + length]
         elif kind == 4:
-            del data[place:]
+            del data[position:]
         else:
             other = dice.choice(FILES)[0]
-            data[place:] = other[dice.randrange(len(other) + 1) :]
+            data[position:] = other[dice.randrange(len(other) + 1) :]
     return bytes(data)
 
 

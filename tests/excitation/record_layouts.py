@@ -24,17 +24,17 @@ TITLES = [
 
 def check_layout(dice: random.Random) -> None:
     """Write a random layout, read it with all and with some of what states it."""
-    content, stated, expected, step = random_layout(dice)
-    found = parse_record(content, "motion", **stated)
-    np.testing.assert_allclose(found.acceleration, expected, rtol=1e-9, err_msg=f"{content[:400]!r}, {stated}")
-    assert abs(found.time_step / step - 1.0) < 1e-6, (content[:400], stated)
-    kept = {name: value for name, value in stated.items() if dice.random() < 0.6}
+    content, arguments, expected, step = random_layout(dice)
+    record = parse_record(content, "motion", **arguments)
+    np.testing.assert_allclose(record.acceleration, expected, rtol=1e-9, err_msg=f"{content[:400]!r}, {arguments}")
+    assert abs(record.time_step / step - 1.0) < 1e-6, (content[:400], arguments)
+    some_arguments = {name: value for name, value in arguments.items() if dice.random() < 0.6}
     try:
-        other = parse_record(content, "motion", **kept)
+        other = parse_record(content, "motion", **some_arguments)
     except InvalidArgumentError:
         return
     same = other.samples == expected.size and np.allclose(other.acceleration, expected, rtol=1e-9)
-    assert same and abs(other.time_step / step - 1.0) < 1e-6, (content[:400], kept)  # noqa: PT018  # one defect
+    assert same and abs(other.time_step / step - 1.0) < 1e-6, (content[:400], some_arguments)  # noqa: PT018  # one defect
 
 
 def random_layout(dice: random.Random) -> tuple[bytes, dict[str, Any], np.ndarray, float]:
@@ -46,49 +46,51 @@ def random_layout(dice: random.Random) -> tuple[bytes, dict[str, Any], np.ndarra
     step = dice.choice([0.005, 0.01, 0.02])
     decimal = dice.choice([".", ".", ","])
     delimiter = dice.choice([";", "\t", " "] if decimal == "," else [",", ";", "\t", " "])
-    stated: dict[str, Any] = {"unit": unit}
+    arguments: dict[str, Any] = {"unit": unit}
     if decimal == ",":
-        stated["decimal"] = ","
+        arguments["decimal"] = ","
     titles = dice.choices(TITLES, k=dice.randint(0, 3))
     if dice.random() < 0.25:
-        stated |= {"wrapped": True, "time_step": step}
+        arguments |= {"wrapped": True, "time_step": step}
         width = dice.randint(2, 8)
         table = [list(values[start : start + width]) for start in range(0, count, width)]
         names: list[str] = []
     else:
-        columns, names, chosen = _columns(dice, values, step, stated)
+        columns, names, chosen = _columns(dice, values, step, arguments)
         table = [list(row) for row in zip(*columns, strict=True)]
         if dice.random() < 0.4 or all(name.isdecimal() for name in names):  # a line of numbers is no header
             names = []
-        stated["acceleration"] = chosen + 1 if not names or dice.random() < 0.4 else names[chosen]
+        arguments["acceleration"] = chosen + 1 if not names or dice.random() < 0.4 else names[chosen]
     if delimiter == " " or len(table[0]) == 1:
         names = [name.replace(" ", "_") for name in names]
-        stated = {key: value.replace(" ", "_") if isinstance(value, str) else value for key, value in stated.items()}
-    quoted = '"' if dice.random() < 0.15 and not stated.get("wrapped") else ""
+        arguments = {
+            key: value.replace(" ", "_") if isinstance(value, str) else value for key, value in arguments.items()
+        }
+    quoted = '"' if dice.random() < 0.15 and not arguments.get("wrapped") else ""
     rows = [delimiter.join(f"{quoted}{value:.4f}{quoted}".replace(".", decimal) for value in row) for row in table]
     lines = [*titles, *([delimiter.join(names)] if names else []), *rows]
     if titles:
-        stated["skip"] = len(titles)
+        arguments["skip"] = len(titles)
     if len(table[0]) > 1 and (quoted or dice.random() < 0.5):
-        stated["delimiter"] = delimiter
+        arguments["delimiter"] = delimiter
     end = dice.choice(["\n", "\r\n", "\r"])
-    return (end.join(lines) + end).encode(dice.choice(["utf-8", "utf-16"])), stated, values * UNITS[unit], step
+    return (end.join(lines) + end).encode(dice.choice(["utf-8", "utf-16"])), arguments, values * UNITS[unit], step
 
 
 def _columns(
-    dice: random.Random, values: np.ndarray, step: float, stated: dict[str, Any]
+    dice: random.Random, values: np.ndarray, step: float, arguments: dict[str, Any]
 ) -> tuple[list[np.ndarray], list[str], int]:
     """Return columns, their names and the place of the accelerations; what states the times is added to `stated`."""
-    others = dice.randint(0, 2)
-    names = dice.sample(NAMES, others + 1)
-    columns = [values, *(values[::-1] * factor for factor in (2.0, 3.0)[:others])]
+    extra_columns = dice.randint(0, 2)
+    names = dice.sample(NAMES, extra_columns + 1)
+    columns = [values, *(values[::-1] * factor for factor in (2.0, 3.0)[:extra_columns])]
     if dice.random() < 0.5:
-        stated["time_step"] = step
+        arguments["time_step"] = step
     else:
         factor = dice.choice([("s", 1.0), ("ms", 1000.0)])
-        place = dice.randint(0, others + 1)
-        columns.insert(place, np.arange(values.size) * step * factor[1])
-        names.insert(place, dice.choice(["time", "t", f"time [{factor[0]}]"]))
-        stated |= {"time": place + 1, "time_unit": factor[0]}
+        position = dice.randint(0, extra_columns + 1)
+        columns.insert(position, np.arange(values.size) * step * factor[1])
+        names.insert(position, dice.choice(["time", "t", f"time [{factor[0]}]"]))
+        arguments |= {"time": position + 1, "time_unit": factor[0]}
     chosen = next(k for k, column in enumerate(columns) if column is values)
     return columns, names, chosen

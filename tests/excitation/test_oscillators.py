@@ -61,22 +61,22 @@ def test_a_stiff_structure_follows_the_ground_and_a_soft_one_does_not():
 
 def test_the_vertical_component_is_passed_through_or_filtered():
     passed, filtered = (floor_motion(GROUND, periods=0.2, vertical=how) for how in ("pass", "filter"))
-    each = round(GROUND.time_step / passed.time_step)
-    np.testing.assert_allclose(passed.vertical[::each][: GROUND.samples], GROUND.vertical, rtol=1e-13)
-    assert not passed.vertical[GROUND.samples * each :].any()
+    parts = round(GROUND.time_step / passed.time_step)
+    np.testing.assert_allclose(passed.vertical[::parts][: GROUND.samples], GROUND.vertical, rtol=1e-13)
+    assert not passed.vertical[GROUND.samples * parts :].any()
     alone = floor_motion(rocking.Record(GROUND.vertical, 0.01, "m/s2"), periods=0.2, relative_tolerance=1e-4)
     ratio = round(filtered.time_step / alone.time_step)
     np.testing.assert_allclose(filtered.vertical, alone.acceleration[::ratio][: filtered.samples], atol=1e-12)
 
 
 @pytest.mark.parametrize(
-    "given",
+    "arguments",
     [{"periods": 0.0}, {"periods": []}, {"periods": [0.1, 0.2], "damping": [0.1] * 3}, {"periods": 1.0, "damping": 1.0},
      {"periods": 1.0, "vertical": "drop"}, {"periods": 1.0, "tail": 1e5}, {"periods": 0.1, "tail": 1e4}],
 )  # fmt: skip
-def test_refusals(given):
-    with pytest.raises(InvalidArgumentError, match="relative_tolerance" if given.get("tail") == 1e4 else "allowed"):
-        floor_motion(GROUND, **given)
+def test_refusals(arguments):
+    with pytest.raises(InvalidArgumentError, match="relative_tolerance" if arguments.get("tail") == 1e4 else "allowed"):
+        floor_motion(GROUND, **arguments)
 
 
 TIMES = np.arange(0, 4, 0.01)
@@ -92,10 +92,10 @@ EQSIG = {
 
 def test_it_agrees_with_eqsig() -> None:
     """Seven digits."""
-    found = rocking.elastic_spectrum(MOTION, [0.05, 0.3, 1.0, 3.0], list(EQSIG))
-    assert found.displacement.values == pytest.approx(np.array(list(EQSIG.values())), rel=1e-5)
-    omega = 2 * np.pi / found.period
-    np.testing.assert_allclose(found.pseudo_acceleration, found.displacement * omega**2)
+    spectrum = rocking.elastic_spectrum(MOTION, [0.05, 0.3, 1.0, 3.0], list(EQSIG))
+    assert spectrum.displacement.values == pytest.approx(np.array(list(EQSIG.values())), rel=1e-5)
+    omega = 2 * np.pi / spectrum.period
+    np.testing.assert_allclose(spectrum.pseudo_acceleration, spectrum.displacement * omega**2)
 
 
 @pytest.mark.parametrize(("period", "zeta"), [(0.02, 0.05), (0.07, 0.0), (0.7, 0.3), (5.0, 0.05)])
@@ -120,8 +120,8 @@ def test_it_is_exact_between_samples_and_after_the_record(period: float, zeta: f
 def test_limits_and_errors() -> None:
     """A stiff oscillator follows either component of the ground; a component that is absent is refused."""
     for component, peak in (("horizontal", MOTION.peak_acceleration), ("vertical", TIMES[-1])):
-        found = rocking.elastic_spectrum(MOTION, 1e-3, component=component).pseudo_acceleration.item()
-        assert found == pytest.approx(peak, rel=1e-3)
+        stiff = rocking.elastic_spectrum(MOTION, 1e-3, component=component).pseudo_acceleration.item()
+        assert stiff == pytest.approx(peak, rel=1e-3)
     level = rocking.Record(MOTION.acceleration, 0.01, "m/s2")
     with pytest.raises(rocking.InvalidArgumentError, match="no vertical component"):
         rocking.elastic_spectrum(level, 1.0, component="vertical")

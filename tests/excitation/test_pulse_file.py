@@ -51,8 +51,8 @@ def test_period_and_name_of_a_file(tmp_path: Path) -> None:
 
 def test_the_layout_of_a_file_can_be_stated(tmp_path: Path) -> None:
     path = written(tmp_path, "a pulse\nx;t\n0;0\n1;0,5\n-0,25;0,75\n0;2\n")
-    found = rocking.SampledPulse.from_file(path, skip=1, acceleration="x", time="t", decimal=",")
-    assert found == rocking.SampledPulse(VALUES, TIMES, name="ramp")
+    pulse = rocking.SampledPulse.from_file(path, skip=1, acceleration="x", time="t", decimal=",")
+    assert pulse == rocking.SampledPulse(VALUES, TIMES, name="ramp")
 
 
 @pytest.mark.parametrize(

@@ -133,23 +133,23 @@ def test_type_c_has_zero_final_velocity_and_displacement(name):
 
 
 @pytest.mark.parametrize(
-    ("text", "given", "name"),
+    ("text", "parameters", "name"),
     [
         ("mavroeidis_papageorgiou(cycles=3, phase=90deg)", {"cycles": 3, "phase": np.pi / 2}, "(cycles=3,phase=1.57"),
         ("-mavroeidis_papageorgiou ( phase = -0.5 rad )", {"phase": -0.5}, "(phase=-0.5rad)"),
         ("mavroeidis_papageorgiou(cycles=2)", {}, ""),
     ],
 )
-def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(text, given, name):
+def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(text, parameters, name):
     pulse = rocking.pulse(text)
     sign = "-" if "-m" in text else ""
-    assert pulse == rocking.pulse(f"{sign}mavroeidis_papageorgiou", **given) == rocking.pulse(pulse.name)
+    assert pulse == rocking.pulse(f"{sign}mavroeidis_papageorgiou", **parameters) == rocking.pulse(pulse.name)
     assert pulse.name.startswith(f"{sign}mavroeidis_papageorgiou{name}")
     assert rocking.pulse(np.str_(text)) == pulse
 
 
 @pytest.mark.parametrize(
-    ("text", "given", "message"),
+    ("text", "parameters", "message"),
     [
         *((name, {}, "`pulse`") for name in ("square", "", "--sine", "Sine", "sine ")),
         ("cosine(cycles=2)", {}, "`cycles` = '2' .* for cosine: no parameters"),
@@ -166,9 +166,9 @@ def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(tex
         ("sine" + "(" * 10_000, {}, "one of sine"),
     ],
 )
-def test_what_is_no_pulse_or_no_parameter_of_it_is_refused(text, given, message):
+def test_what_is_no_pulse_or_no_parameter_of_it_is_refused(text, parameters, message):
     with pytest.raises(InvalidArgumentError, match=message):
-        rocking.pulse(text, **given)
+        rocking.pulse(text, **parameters)
 
 
 @pytest.mark.parametrize("cycles", [1, 3, 40])
@@ -190,18 +190,18 @@ def test_commas_separate_pulses_except_within_brackets():
 
 @pytest.mark.parametrize("pulse", EVERY, ids=label)
 def test_stationary_phases_are_computed_if_not_given(pulse):
-    own = (pulse.terms,) if isinstance(pulse, SinusoidalPulse) else (pulse.polynomial, pulse.spread)
-    made = type(pulse)(pulse.name, pulse.start, pulse.end, (), *own)
-    np.testing.assert_allclose(made.stationary, pulse.stationary, rtol=0, atol=3e-15 * max(1.0, pulse.end))
+    coefficients = (pulse.terms,) if isinstance(pulse, SinusoidalPulse) else (pulse.polynomial, pulse.spread)
+    copy = type(pulse)(pulse.name, pulse.start, pulse.end, (), *coefficients)
+    np.testing.assert_allclose(copy.stationary, pulse.stationary, rtol=0, atol=3e-15 * max(1.0, pulse.end))
 
 
-def scaled(kind, start, end, coefficients, *rest):
+def scaled(kind, start, end, coefficients, *parameters):
     """A pulse of that shape, scaled to unit peak."""
     peak = 1.0
     for _ in range(8):  # the maximum lies between two points: the error message gives it
         divided = tuple((c[0] / peak, *c[1:]) if isinstance(c, tuple) else c / peak for c in coefficients)
         try:
-            return kind("drawn", start, end, (), divided, *rest)
+            return kind("drawn", start, end, (), divided, *parameters)
         except InvalidArgumentError as error:
             assume(error.parameter == "max |f|" and error.value > 1e-3)
             peak *= error.value
@@ -280,9 +280,9 @@ def test_pulses_outside_the_limits_of_the_solver_are_rejected(parameter, make):
 def test_the_longest_pulse_has_a_response():
     pulse = SinusoidalPulse("long", 0.0, MAX_PIECES * pi, (), ((1.0, 1.0, 0.0),))
     assert len(pulse.monotone_pieces) == MAX_PIECES
-    found = rocking.peak_response(pulse, slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
+    response = rocking.peak_response(pulse, slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
     short = rocking.peak_response("cosine", slenderness=0.9, frequency_ratio=8.0, restitution=0.5)
-    assert found.peak_rotation >= short.peak_rotation > 0.0
+    assert response.peak_rotation >= short.peak_rotation > 0.0
 
 
 @pytest.mark.parametrize(
@@ -296,8 +296,8 @@ def test_the_longest_pulse_has_a_response():
     ],
 )
 def test_integrals_of_shapes_in_closed_form(pulse: str, largest: float, final: float, total: float) -> None:
-    found = impulse_of(as_pulse(pulse))
-    np.testing.assert_allclose([found.largest, found.final, found.total], [largest, final, total], atol=2e-13)
+    impulse = impulse_of(as_pulse(pulse))
+    np.testing.assert_allclose([impulse.largest, impulse.final, impulse.total], [largest, final, total], atol=2e-13)
 
 
 def test_pulses_that_leave_the_ground_moving_are_known_by_their_integral() -> None:
@@ -305,5 +305,5 @@ def test_pulses_that_leave_the_ground_moving_are_known_by_their_integral() -> No
 
 
 def test_a_sampled_pulse_is_integrated_exactly() -> None:
-    found = impulse_of(rocking.SampledPulse([0.0, 1.0, -1.0, 0.5], period=2.0 * math.pi))
-    np.testing.assert_allclose([found.largest, found.final, found.total], [0.75, 0.25, 1.0 + 1 / 3 + 1 / 12])
+    impulse = impulse_of(rocking.SampledPulse([0.0, 1.0, -1.0, 0.5], period=2.0 * math.pi))
+    np.testing.assert_allclose([impulse.largest, impulse.final, impulse.total], [0.75, 0.25, 1.0 + 1 / 3 + 1 / 12])

@@ -44,9 +44,9 @@ def test_invalid_arguments_are_named(arguments: dict, named: str) -> None:
 
 
 def test_records_cannot_be_changed() -> None:
-    given = np.array([0.0, 1.0, 2.0])
-    record = rocking.Record(given, 0.01, unit="m/s2")
-    given[0] = 5.0
+    samples = np.array([0.0, 1.0, 2.0])
+    record = rocking.Record(samples, 0.01, unit="m/s2")
+    samples[0] = 5.0
     assert record.acceleration[0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         record.acceleration[0] = 1.0
@@ -65,8 +65,8 @@ def test_digest_and_equality_depend_on_samples_and_step_only() -> None:
 
 def test_a_vertical_component_belongs_to_the_record() -> None:
     upwards = np.array([0.1, -0.2, 0.0])
-    given = {"acceleration": [0.0, 1.0, 0.5], "time_step": 0.01, "unit": "g"}
-    record, plain = rocking.Record(**given, vertical=upwards), rocking.Record(**given)
+    arguments = {"acceleration": [0.0, 1.0, 0.5], "time_step": 0.01, "unit": "g"}
+    record, plain = rocking.Record(**arguments, vertical=upwards), rocking.Record(**arguments)
     upwards[0] = 5.0
     np.testing.assert_allclose(record.vertical, np.array([0.1, -0.2, 0.0]) * STANDARD_GRAVITY, rtol=1e-15)
     with pytest.raises(ValueError, match="read-only"):
@@ -74,10 +74,10 @@ def test_a_vertical_component_belongs_to_the_record() -> None:
     assert record.peak_vertical_acceleration == pytest.approx(0.2 * STANDARD_GRAVITY)
     assert repr(record) == "<rocking.Record: 3 samples at 0.01 s, PGA 1 g, with vertical, 0.2 g>"
     assert (plain.vertical, plain.peak_vertical_acceleration) == (None, 0.0)
-    others = [rocking.Record(**given, vertical=other) for other in (np.zeros(3), [0.1, -0.2, 0.01])]
-    others.append(rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"))
-    assert len({record.digest, plain.digest, *(other.digest for other in others)}) == 5
-    assert record == rocking.Record(**given, vertical=[0.1, -0.2, 0.0], name="other") != plain
+    with_vertical = [rocking.Record(**arguments, vertical=other) for other in (np.zeros(3), [0.1, -0.2, 0.01])]
+    with_vertical.append(rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"))
+    assert len({record.digest, plain.digest, *(other.digest for other in with_vertical)}) == 5
+    assert record == rocking.Record(**arguments, vertical=[0.1, -0.2, 0.0], name="other") != plain
     assert record.arias_intensity == plain.arias_intensity
 
 
@@ -87,9 +87,9 @@ def test_processing_treats_both_components_alike() -> None:
     record = rocking.Record(a, horizontal.time_step, "m/s2", vertical=-2.0 * a + 0.1)
     alone = rocking.Record(-2.0 * a + 0.1, horizontal.time_step, "m/s2")
     for process in (lambda motion: motion.resampled(0.002), lambda motion: motion.baseline_corrected(order=2)):
-        found = process(record)
-        np.testing.assert_array_equal(found.acceleration, process(horizontal).acceleration)
-        np.testing.assert_array_equal(found.vertical, process(alone).acceleration)
+        processed = process(record)
+        np.testing.assert_array_equal(processed.acceleration, process(horizontal).acceleration)
+        np.testing.assert_array_equal(processed.vertical, process(alone).acceleration)
         assert process(horizontal).vertical is None
 
 
@@ -107,11 +107,13 @@ def test_measures_of_a_sine() -> None:
 
 
 def test_a_record_that_leaves_the_ground_moving_is_named() -> None:
-    whole = sine_record()
-    half = rocking.Record(whole.acceleration[: round(0.25 / whole.time_step) + 1], whole.time_step, unit="m/s2")
-    for motion, moves in ((whole, False), (half, True)):
-        found = rocking.Block(0.4, 1.6).response(motion, thresholds=False)
-        assert any("velocity of the record ends at 100 %" in text for text in found.warnings) == moves
+    complete = sine_record()
+    half = rocking.Record(
+        complete.acceleration[: round(0.25 / complete.time_step) + 1], complete.time_step, unit="m/s2"
+    )
+    for motion, moves in ((complete, False), (half, True)):
+        response = rocking.Block(0.4, 1.6).response(motion, thresholds=False)
+        assert any("velocity of the record ends at 100 %" in text for text in response.warnings) == moves
 
 
 def padded_mean_period(a: np.ndarray, dt: float) -> float:
@@ -170,9 +172,9 @@ def test_baseline_correction_removes_a_polynomial_of_its_order(order: int) -> No
 )
 def test_resampling_is_the_polyphase_filter_of_scipy(up: int, down: int, samples: int) -> None:
     record = rocking.Record(np.random.default_rng(up).standard_normal(samples), 0.01, unit="m/s2")
-    found = record.resampled(0.01 * down / up).acceleration
-    expected = resample_poly(record.acceleration, up, down, window=("kaiser", 8.0))[: found.size]
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * record.peak_acceleration)
+    resampled = record.resampled(0.01 * down / up).acceleration
+    expected = resample_poly(record.acceleration, up, down, window=("kaiser", 8.0))[: resampled.size]
+    np.testing.assert_allclose(resampled, expected, rtol=0.0, atol=1e-14 * record.peak_acceleration)
 
 
 def test_what_a_record_cannot_become_is_rejected() -> None:

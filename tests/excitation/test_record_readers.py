@@ -113,26 +113,28 @@ REFUSED = [  # file, arguments, what the message names
 
 @pytest.mark.parametrize(("file", "arguments", "peak", "step", "samples"), READ)
 def test_what_is_stated_is_read(file, arguments, peak, step, samples) -> None:
-    found = rocking.read_record(FOLDER / file, **arguments)
-    assert (found.time_step, found.samples) == (step, samples)
-    assert found.peak_acceleration == pytest.approx(peak, rel=1e-4)
+    record = rocking.read_record(FOLDER / file, **arguments)
+    assert (record.time_step, record.samples) == (step, samples)
+    assert record.peak_acceleration == pytest.approx(peak, rel=1e-4)
 
 
-@pytest.mark.parametrize(("file", "arguments", "said"), REFUSED)
-def test_what_is_not_stated_is_asked_for(file, arguments, said) -> None:
-    with pytest.raises(RecordFileError, match=f"(?s){said}"):
+@pytest.mark.parametrize(("file", "arguments", "message"), REFUSED)
+def test_what_is_not_stated_is_asked_for(file, arguments, message) -> None:
+    with pytest.raises(RecordFileError, match=f"(?s){message}"):
         rocking.read_record(FOLDER / file, **arguments)
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.iterdir()), ids=lambda path: path.name)
 def test_without_arguments_only_what_states_itself_is_read(path) -> None:
-    stated = {file: right for file, arguments, *right in READ if not arguments}
+    self_describing = {file: right for file, arguments, *right in READ if not arguments}
     try:
-        found = rocking.read_record(path)
+        record = rocking.read_record(path)
     except RecordFileError:
-        assert path.name not in stated
+        assert path.name not in self_describing
     else:
-        assert stated[path.name] == pytest.approx([found.peak_acceleration, found.time_step, found.samples], rel=1e-4)
+        assert self_describing[path.name] == pytest.approx(
+            [record.peak_acceleration, record.time_step, record.samples], rel=1e-4
+        )
 
 
 @pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
@@ -157,14 +159,14 @@ def test_named_formats_are_read_by_signature_and_by_name(kind: str) -> None:
     text, expected = NAMED[kind]
     for content in (text.encode(), text.replace("\n", "\r\n").encode(), text.encode("utf-16")):
         for arguments in ({}, {"format": kind.lower()}):
-            found = parse_record(content, "motion", **arguments)
-            np.testing.assert_allclose(found.acceleration, expected, rtol=1e-12, atol=1e-15)
-            assert found.time_step == STEP
+            record = parse_record(content, "motion", **arguments)
+            np.testing.assert_allclose(record.acceleration, expected, rtol=1e-12, atol=1e-15)
+            assert record.time_step == STEP
     other = parse_record(text.encode(), "motion", unit="mm/s2", time_step=0.02)
-    said = " ".join(other.remarks)
+    remarks = " ".join(other.remarks)
     assert other.time_step == 0.02
-    assert "; mm/s2 is used, as the argument `unit` says" in said
-    assert "a time step of 0.01 s; 0.02 s is used" in said
+    assert "; mm/s2 is used, as the argument `unit` says" in remarks
+    assert "a time step of 0.01 s; 0.02 s is used" in remarks
     stop = StopFlag()
     stop.set()
     with pytest.raises(StoppedError):
@@ -175,14 +177,14 @@ def test_named_formats_are_read_by_signature_and_by_name(kind: str) -> None:
     "line", ["4000 0.0100 NPTS, DT", "NPTS 4000 DT 0.01", "DT=.01SEC, NPTS=4000", "NPTS=4000, DT=1D-2"]
 )
 def test_forms_of_the_line_of_at2(line: str) -> None:
-    found = parse_record(at2(line, body=rows(count=3990)).encode(), "x.at2")
-    assert (found.samples, found.time_step) == (3990, 0.01)
-    assert found.remarks == ("the file holds 3990 samples, its header states 4000",)
-    assert found.baseline_corrected().remarks == found.remarks
+    record = parse_record(at2(line, body=rows(count=3990)).encode(), "x.at2")
+    assert (record.samples, record.time_step) == (3990, 0.01)
+    assert record.remarks == ("the file holds 3990 samples, its header states 4000",)
+    assert record.baseline_corrected().remarks == record.remarks
 
 
 @pytest.mark.parametrize(
-    ("text", "arguments", "said"),
+    ("text", "arguments", "message"),
     [
         (at2("NPTS= 10, DT= .01"), {}, "line 4: found 10 stated, 24 values"),
         (at2("NPTS= 24, DT= 0"), {}, "line 4: found 0; expected the time step DT"),
@@ -225,11 +227,11 @@ def test_forms_of_the_line_of_at2(line: str) -> None:
         ("0;0\n", {"acceleration": 2, "time": 2, "time_unit": "s", "unit": "g"}, "different columns"),
     ],
 )  # fmt: skip
-def test_damaged_files_are_refused_with_place_and_reason(text, arguments, said) -> None:
-    if said == "^$":  # the argument wins
+def test_damaged_files_are_refused_with_place_and_reason(text, arguments, message) -> None:
+    if message == "^$":  # the argument wins
         assert parse_record(text.encode(), "motion", **arguments).time_step == pytest.approx(1e-3)
         return
-    with pytest.raises(RecordFileError, match=f"(?s)^motion.*{said}"):
+    with pytest.raises(RecordFileError, match=f"(?s)^motion.*{message}"):
         parse_record(text.encode(), "motion", **arguments)
 
 
@@ -269,19 +271,19 @@ def test_what_is_unusual_is_a_question_with_an_answer(unusual: str) -> None:
 def test_an_argument_beats_the_file_with_a_remark_that_names_both() -> None:
     title = "velocity of the table\n"
     text = title + pairs("time [s],Accel (V)\n")
-    stated = {"skip": 1, "acceleration": "accel", "unit": "g"}
+    arguments = {"skip": 1, "acceleration": "accel", "unit": "g"}
     with pytest.raises(RecordFileError, match="velocity of the table"):
-        parse_record(text.encode(), "motion", **stated)
-    found = parse_record(text.encode(), "motion", format="columns", **stated)
-    assert any("velocity of the table; g is used" in remark for remark in found.remarks)
-    found = parse_record(pairs().encode(), "motion", unit="gal", time="time", time_unit="ms", allow_unusual=True)
-    assert [remark.partition(";")[0] for remark in found.remarks] == [
+        parse_record(text.encode(), "motion", **arguments)
+    record = parse_record(text.encode(), "motion", format="columns", **arguments)
+    assert any("velocity of the table; g is used" in remark for remark in record.remarks)
+    record = parse_record(pairs().encode(), "motion", unit="gal", time="time", time_unit="ms", allow_unusual=True)
+    assert [remark.partition(";")[0] for remark in record.remarks] == [
         "the file says acceleration [g]",
         "the times are in s, says the file",
     ]
-    found = parse_record(text.removeprefix(title).encode(), "motion", **stated | {"skip": 0})
-    assert found.remarks == ("the file says Accel (V); g is used, as the argument `unit` says",)
-    assert found.source == "motion (column 2, Accel (V), from line 2)"
+    record = parse_record(text.removeprefix(title).encode(), "motion", **arguments | {"skip": 0})
+    assert record.remarks == ("the file says Accel (V); g is used, as the argument `unit` says",)
+    assert record.source == "motion (column 2, Accel (V), from line 2)"
 
 
 def test_errors_can_be_sent_between_processes(tmp_path) -> None:
@@ -311,9 +313,9 @@ def test_seismic_formats_with_obspy(tmp_path) -> None:
         trace.write(str(path), format=name)
         if kind in ("TSPAIR", "SLIST"):
             path.write_text(path.read_text().replace("Counts", "M/S**2"))
-        found = rocking.read_record(path, unit="m/s2")
-        assert found.time_step == pytest.approx(STEP, rel=1e-6)
-        np.testing.assert_allclose(found.acceleration, values(), atol=1e-6)
+        record = rocking.read_record(path, unit="m/s2")
+        assert record.time_step == pytest.approx(STEP, rel=1e-6)
+        np.testing.assert_allclose(record.acceleration, values(), atol=1e-6)
     trace.data = np.arange(24, dtype=np.int32)
     trace.write(str(tmp_path / "counts"), format="MSEED")
     with pytest.raises(RecordFileError, match="counts"):
@@ -329,12 +331,12 @@ def test_the_vertical_component_of_a_second_file(count: int, done: str, tmp_path
     paths = [tmp_path / name for name in ("h.at2", "up.at2")]
     paths[0].write_text(ACROSS)
     paths[1].write_text(at2(f"NPTS= {count}, DT= .01 SEC", body=rows(count=count)))
-    found = rocking.read_record(paths[0], vertical=paths[1])
+    record = rocking.read_record(paths[0], vertical=paths[1])
     expected = np.zeros(100)
     expected[:count] = values(count)[:100] * G
-    np.testing.assert_allclose(found.vertical, expected, rtol=1e-12)
-    np.testing.assert_array_equal(found.acceleration, rocking.read_record(paths[0]).acceleration)
-    assert all(done in remark for remark in found.remarks)
+    np.testing.assert_allclose(record.vertical, expected, rtol=1e-12)
+    np.testing.assert_array_equal(record.acceleration, rocking.read_record(paths[0]).acceleration)
+    assert all(done in remark for remark in record.remarks)
     for wrong in (at2("NPTS= 80, DT= .01 SEC", body=rows(count=80)), at2("NPTS= 100, DT= .02", body=rows(count=100))):
         paths[1].write_text(wrong)
         with pytest.raises(InvalidArgumentError, match="`vertical`"):
@@ -346,16 +348,16 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
     path.write_text(
         "time [s],NS [g],UP [g]\n" + "".join(f"{k * STEP:.2f},{v},{v / 2}\n" for k, v in enumerate(values()))
     )
-    found = rocking.read_record(path, acceleration="NS", vertical="up")
-    np.testing.assert_allclose(found.vertical, found.acceleration / 2.0)
-    assert found == rocking.read_record(path, acceleration=2, vertical=3)
+    record = rocking.read_record(path, acceleration="NS", vertical="up")
+    np.testing.assert_allclose(record.vertical, record.acceleration / 2.0)
+    assert record == rocking.read_record(path, acceleration=2, vertical=3)
     for vertical in ("east", tmp_path / "none.at2"):
         with pytest.raises(InvalidArgumentError, match=r"`vertical` = .*(one column east|no such file)"):
             rocking.read_record(path, acceleration="NS", vertical=vertical)
 
 
 @pytest.mark.parametrize(
-    ("header", "stated", "second", "radian"),
+    ("header", "arguments", "second", "radian"),
     [
         ("time [s],rotation [deg]", {}, 1.0, np.radians(1.0)),
         ("time [ms],rotation [mrad]", {}, 1e-3, 1e-3),
@@ -363,21 +365,21 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
         ("frame,rotation [rad]", {"time_step": 1.0 / 50.0}, 1.0 / 250.0, 1.0),
     ],
 )
-def test_rotations_are_in_the_units_that_are_stated(header, stated, second, radian) -> None:
-    time, rotation = read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n10,3\n".encode()), 9, **stated)
+def test_rotations_are_in_the_units_that_are_stated(header, arguments, second, radian) -> None:
+    time, rotation = read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n10,3\n".encode()), 9, **arguments)
     np.testing.assert_allclose(time, second * np.array([0.0, 5.0, 10.0]), rtol=1e-15)
     np.testing.assert_allclose(rotation, radian * np.array([1.0, 2.0, 3.0]), rtol=1e-15)
 
 
 def test_traces_are_asked_for_what_they_do_not_state() -> None:
-    for name, said in (
+    for name, message in (
         ("frame_counter.csv", "`time` .*`time_step`"),
         ("imu_roll_pitch_yaw.csv", "`rotation` .*`unit`"),
     ):
-        with pytest.raises(RecordFileError, match=said):
+        with pytest.raises(RecordFileError, match=message):
             read_rotations(TextFile(name, (FOLDER / name).read_bytes()), 10_000)
-    stated = {"rotation": "roll_deg", "unit": "deg", "time": "time_s", "time_unit": "s"}
-    _, rotation = read_rotations(TextFile("imu", (FOLDER / "imu_roll_pitch_yaw.csv").read_bytes()), 10_000, **stated)
+    arguments = {"rotation": "roll_deg", "unit": "deg", "time": "time_s", "time_unit": "s"}
+    _, rotation = read_rotations(TextFile("imu", (FOLDER / "imu_roll_pitch_yaw.csv").read_bytes()), 10_000, **arguments)
     assert rotation[0] == pytest.approx(np.radians(8.598))
 
 

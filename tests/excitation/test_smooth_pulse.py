@@ -100,7 +100,7 @@ def test_what_is_not_a_smooth_function_is_refused(function, message):
 
 
 @pytest.mark.parametrize(
-    ("name", "start", "end", "said"),
+    ("name", "start", "end", "message"),
     [
         ("", 0.0, 1.0, "`name`"),
         ("given", 1.0, 1.0, "`end`"),
@@ -109,8 +109,8 @@ def test_what_is_not_a_smooth_function_is_refused(function, message):
         ("given", 0.0, 90.0 * math.pi, f"90 extremes.*fewer than {MAX_PIECES}"),
     ],
 )
-def test_names_and_windows_are_checked(name, start, end, said):
-    with pytest.raises(InvalidArgumentError, match=said):
+def test_names_and_windows_are_checked(name, start, end, message):
+    with pytest.raises(InvalidArgumentError, match=message):
         Given(name, start, end, np.sin)
 
 

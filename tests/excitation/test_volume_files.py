@@ -69,8 +69,8 @@ def geonet(volume: int) -> str:
         reals[20:26] = [1.0, 0.0, 0.0, 1.0, 0.005, 0.02]
         text += f"{'Unc' if volume == 1 else 'C'}orrected accelerogram 20010203_040506_XXXX_20 GNS Science\n" + TEXT * 8
         text += f"Number of points  {COUNT}    Duration 0.72 sec\n"
-        about = "Raw readings in units of 1.00 mm/s/s  at intervals of 0.020 s", "Data at 0.020 sec intervals"
-        text += about[volume - 1] + f"\n{TEXT}Component {name}  Longitudinal Accelerometer Axis\n"
+        readings = "Raw readings in units of 1.00 mm/s/s  at intervals of 0.020 s", "Data at 0.020 sec intervals"
+        text += readings[volume - 1] + f"\n{TEXT}Component {name}  Longitudinal Accelerometer Axis\n"
         text += "Acceleration:  peak  -9733.1 mm/s/s at 144.88 sec     rms    719.0 mm/s/s\n" + TEXT * 2
         text += rows(ints, "{:8d}", 10) + rows(reals, "{:8.4f}", 10)
         for factor, count in zip((10.0, 1.0, 0.1), counts, strict=True):
@@ -96,21 +96,21 @@ TWO_CHANNELS = cosmos().replace("Chan   1:", "Cha:  1:") + cosmos().replace("Cha
 )
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_channels_are_read(text, component, channel, step, tolerance, end):
-    found = parse_record(text.replace("\n", end).encode(), "x", acceleration=component)
-    assert found.time_step == step
-    np.testing.assert_allclose(100.0 * found.acceleration, samples(channel), atol=tolerance)
+    record = parse_record(text.replace("\n", end).encode(), "x", acceleration=component)
+    assert record.time_step == step
+    np.testing.assert_allclose(100.0 * record.acceleration, samples(channel), atol=tolerance)
 
 
 def test_volume_1_in_g():
     text = "Uncorrected Accelerogram Data\nUnits of uncor data are sec and g .        Max  =   .079 g\n"
     text += f"{COUNT:6d} Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)\n"
-    found = parse_record((text + rows(samples(0) / 980.0, "{:9.6f}", 8)).encode(), "x")
-    assert found.time_step == 0.005
-    np.testing.assert_allclose(found.acceleration, samples(0) / 980.0 * STANDARD_GRAVITY, atol=1e-5)
+    record = parse_record((text + rows(samples(0) / 980.0, "{:9.6f}", 8)).encode(), "x")
+    assert record.time_step == 0.005
+    np.testing.assert_allclose(record.acceleration, samples(0) / 980.0 * STANDARD_GRAVITY, atol=1e-5)
 
 
 @pytest.mark.parametrize(
-    ("text", "arguments", "said"),
+    ("text", "arguments", "message"),
     [
         (csmip(), {}, "channels Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`acceleration`"),
         (csmip(), {"acceleration": "deg"}, "expected one of them, not deg"),
@@ -144,13 +144,13 @@ def test_volume_1_in_g():
         ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "no block of accelerations; expected a Volume"),
     ],
 )
-def test_others_are_refused_by_their_names(text, arguments, said):
-    with pytest.raises(RecordFileError, match=said):
+def test_others_are_refused_by_their_names(text, arguments, message):
+    with pytest.raises(RecordFileError, match=message):
         parse_record(text.encode(), "x", **arguments)
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         (csmip().replace("(8f10.6)", "(1i1000000000)"), "line 9: .*a width of 1 to 40"),
         (csmip().replace("(8f10.6)", "(8f0.6)"), "line 9: .*a width of 1 to 40"),
@@ -167,6 +167,6 @@ def test_others_are_refused_by_their_names(text, arguments, said):
         *((text[: len(text) // 5], "x") for text in (csmip(), cosmos(), geonet(1), geonet(2))),
     ],
 )
-def test_hostile_headers_are_refused_with_their_line(text, said):
-    with pytest.raises(RecordFileError, match=said):
+def test_hostile_headers_are_refused_with_their_line(text, message):
+    with pytest.raises(RecordFileError, match=message):
         parse_record(text.encode(), "x", acceleration=1)

@@ -18,10 +18,10 @@ from rocking._interpolation.stencils import (
 UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
 
 
-def interpolate(values, mesh, cells, codes, place):
-    found = np.empty(cells[0].size)
-    interpolate_cells(values, *cells, codes, *mesh.within(cells, place), mesh, found)
-    return found
+def interpolate(values, mesh, cells, codes, fractions):
+    interpolated = np.empty(cells[0].size)
+    interpolate_cells(values, *cells, codes, *mesh.within(cells, fractions), mesh, interpolated)
+    return interpolated
 
 
 def cubic(x, y):
@@ -36,9 +36,9 @@ def test_cubics_are_interpolated_exactly():
     cells = np.nonzero(interpolated_cells(valid))
     assert cells[0].size > 10
     codes = np.full(cells[0].size, PEAK)
-    for place in ((0.0, 0.0), (0.3, 0.9), (1.0, 0.5)):
-        found = interpolate(values, mesh, cells, codes, place)
-        np.testing.assert_allclose(found, cubic(*mesh.within(cells, place)), rtol=1e-12, atol=1e-12)
+    for fractions in ((0.0, 0.0), (0.3, 0.9), (1.0, 0.5)):
+        interpolated = interpolate(values, mesh, cells, codes, fractions)
+        np.testing.assert_allclose(interpolated, cubic(*mesh.within(cells, fractions)), rtol=1e-12, atol=1e-12)
 
 
 def test_error_decreases_with_the_fourth_power_of_the_step_on_uneven_axes():
@@ -49,9 +49,9 @@ def test_error_decreases_with_the_fourth_power_of_the_step_on_uneven_axes():
         mesh = Mesh.of(axis, np.exp(axis))
         cells = np.nonzero(interpolated_cells(np.ones((n + 1, n + 1), dtype=bool)))
         codes = np.full(cells[0].size, PEAK)
-        found = interpolate(np.sin(3 * axis)[:, None] * np.cos(2 * axis), mesh, cells, codes, (0.5, 0.5))
+        interpolated = interpolate(np.sin(3 * axis)[:, None] * np.cos(2 * axis), mesh, cells, codes, (0.5, 0.5))
         x, y = mesh.within(cells, (0.5, 0.5))
-        errors.append(np.abs(found - np.sin(3 * x) * np.cos(2 * y)).max())
+        errors.append(np.abs(interpolated - np.sin(3 * x) * np.cos(2 * y)).max())
     assert np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(-4.0, abs=0.3)
 
 

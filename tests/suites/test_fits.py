@@ -56,17 +56,17 @@ def test_intervals_hold_the_answer_as_often_as_they_state(records, suites):
 def test_intervals_do_not_shrink_with_more_levels():
     # levels of one record depend on each other; intervals that took them as independent would shrink by sqrt(10)
     capacity = 2.0 * np.exp(0.4 * np.random.default_rng(5).standard_normal(30))
-    each = [np.geomspace(0.3, 10.0, count) for count in (15, 150)]
-    coarse, fine = np.log([fit_curve(outcomes_of(capacity, levels), levels).median_interval for levels in each])
+    grids = [np.geomspace(0.3, 10.0, count) for count in (15, 150)]
+    coarse, fine = np.log([fit_curve(outcomes_of(capacity, levels), levels).median_interval for levels in grids])
     assert np.ptp(fine) == pytest.approx(np.ptp(coarse), rel=0.1)
 
 
 def test_unit_of_the_intensity_does_not_matter():
     reached = sample(25, 2.0, 0.4, 3)
-    one, other = fit_curve(reached, LEVELS), fit_curve(reached, LEVELS * 9.80665)
-    assert other.median == pytest.approx(9.80665 * one.median, rel=1e-8)
-    assert other.median_interval == pytest.approx([9.80665 * end for end in one.median_interval], rel=1e-7)
-    assert other.dispersion == pytest.approx(one.dispersion, rel=1e-8)
+    in_g, in_si = fit_curve(reached, LEVELS), fit_curve(reached, LEVELS * 9.80665)
+    assert in_si.median == pytest.approx(9.80665 * in_g.median, rel=1e-8)
+    assert in_si.median_interval == pytest.approx([9.80665 * end for end in in_g.median_interval], rel=1e-7)
+    assert in_si.dispersion == pytest.approx(in_g.dispersion, rel=1e-8)
 
 
 def test_falling_curve_is_the_mirror_of_the_rising_one():

@@ -31,9 +31,9 @@ def synthetic():
     records = []
     for k, acceleration in enumerate(capacity.tolist()):
         # under a half sine a plastic block (eta = 0) overturns above one acceleration, which falls with the duration
-        given = {"slenderness": BLOCK.uplift_acceleration / acceleration, "restitution": 0.0, "alpha": BLOCK.alpha}
-        found = critical_frequency_ratio("half_sine", **given, window=(0.01, 100.0))
-        records.append(sampled("half_sine", float(found.frequency_ratio[-1]), name=f"half sine {k}"))
+        block = {"slenderness": BLOCK.uplift_acceleration / acceleration, "restitution": 0.0, "alpha": BLOCK.alpha}
+        critical = critical_frequency_ratio("half_sine", **block, window=(0.01, 100.0))
+        records.append(sampled("half_sine", float(critical.frequency_ratio[-1]), name=f"half sine {k}"))
     return records, capacity
 
 
@@ -44,39 +44,39 @@ def noisy():
 
 def test_lognormal_answer_is_recovered_within_its_intervals(synthetic):
     records, capacity = synthetic
-    found = rocking.fragility(records, BLOCK, intensity=LEVELS, restitution=0.0)
+    fragility = rocking.fragility(records, BLOCK, intensity=LEVELS, restitution=0.0)
     expected = (capacity[:, None] <= LEVELS).sum(axis=0)
-    assert np.abs(found.exceedances - expected).max() <= 1  # a capacity within the sampling error of a level
-    own = found.sel(model="lognormal")
-    assert own.fit_status == FitStatus.FITTED
-    assert own.median_intensity_lower < MEDIAN < own.median_intensity_upper
-    assert own.dispersion_lower < BETA < own.dispersion_upper
-    assert float(own.median_intensity) == pytest.approx(np.exp(np.log(capacity).mean()), rel=0.03)
-    assert float(own.dispersion) == pytest.approx(np.log(capacity).std(), rel=0.1)
+    assert np.abs(fragility.exceedances - expected).max() <= 1  # a capacity within the sampling error of a level
+    curve = fragility.sel(model="lognormal")
+    assert curve.fit_status == FitStatus.FITTED
+    assert curve.median_intensity_lower < MEDIAN < curve.median_intensity_upper
+    assert curve.dispersion_lower < BETA < curve.dispersion_upper
+    assert float(curve.median_intensity) == pytest.approx(np.exp(np.log(capacity).mean()), rel=0.03)
+    assert float(curve.dispersion) == pytest.approx(np.log(capacity).std(), rel=0.1)
     true = norm.cdf(np.log(LEVELS / MEDIAN) / BETA)
-    assert ((found.fraction_lower <= true) & (true <= found.fraction_upper)).all()
-    assert not found.survives_above_first.any()
-    np.testing.assert_array_equal(found.first_exceedances, found.exceedances)
+    assert ((fragility.fraction_lower <= true) & (true <= fragility.fraction_upper)).all()
+    assert not fragility.survives_above_first.any()
+    np.testing.assert_array_equal(fragility.first_exceedances, fragility.exceedances)
 
 
 def test_records_that_survive_above_their_first_overturning_are_named():
     records = [sampled("sine", 4.0, name="sine"), sampled("half_sine", 1.0, name="half sine")]
     options = {"measure": "pga_ratio", "demand": ["overturning"]}
-    found = rocking.fragility(records, [BLOCK], intensity=np.linspace(1.05, 8.0, 100), **options)
-    assert found.survives_above_first.sel(record="sine").item() == 1
-    assert found.survives_above_first.sel(record="half sine").item() == 0
-    assert found.records_surviving_above_first.item() == "sine"
-    assert (found.first_exceedances >= found.exceedances).all()
-    assert (found.first_exceedances > found.exceedances).any()
+    fragility = rocking.fragility(records, [BLOCK], intensity=np.linspace(1.05, 8.0, 100), **options)
+    assert fragility.survives_above_first.sel(record="sine").item() == 1
+    assert fragility.survives_above_first.sel(record="half sine").item() == 0
+    assert fragility.records_surviving_above_first.item() == "sine"
+    assert (fragility.first_exceedances >= fragility.exceedances).all()
+    assert (fragility.first_exceedances > fragility.exceedances).any()
 
 
 def test_limit_states_are_nested(noisy):
-    found = rocking.fragility(noisy, BLOCK, intensity=LEVELS, demand=[0.2, 0.6, "alpha", 1.0, 1.5, "overturning"])
-    count = found.exceedances
+    fragility = rocking.fragility(noisy, BLOCK, intensity=LEVELS, demand=[0.2, 0.6, "alpha", 1.0, 1.5, "overturning"])
+    count = fragility.exceedances
     assert (count.diff("demand") <= 0).all()
     np.testing.assert_array_equal(count.sel(demand="alpha"), count.sel(demand="1 alpha"))
     assert (count.sel(demand="0.2 alpha") > count.sel(demand="overturning")).any()
-    np.testing.assert_array_equal(count.sel(demand="alpha"), found.exceeded_alpha.sum("record"))
+    np.testing.assert_array_equal(count.sel(demand="alpha"), fragility.exceeded_alpha.sum("record"))
 
 
 def test_measures_differ_by_the_factor_of_each_record(noisy):
@@ -87,19 +87,19 @@ def test_measures_differ_by_the_factor_of_each_record(noisy):
         ("pgv_ratio", [BLOCK.uplift_acceleration / BLOCK.frequency_parameter * ratio for ratio in pga_over_pgv]),
         ("pgv", pga_over_pgv),
     ):
-        found = rocking.fragility(noisy, BLOCK, intensity=levels, measure=measure)
+        fragility = rocking.fragility(noisy, BLOCK, intensity=levels, measure=measure)
         for k, record in enumerate(noisy):
             alone = rocking.fragility(record, BLOCK, intensity=levels * factor[k], measure="pga")
-            np.testing.assert_allclose(found.scale[:, k], alone.scale[:, 0])
-            np.testing.assert_allclose(found.peak_rotation[:, k], alone.peak_rotation[:, 0], rtol=1e-9)
+            np.testing.assert_allclose(fragility.scale[:, k], alone.scale[:, 0])
+            np.testing.assert_allclose(fragility.peak_rotation[:, k], alone.peak_rotation[:, 0], rtol=1e-9)
 
 
 def test_mirrored_record_and_order_of_records_do_not_matter(noisy):
     mirrored = [rocking.Record(-r.acceleration, r.time_step, "m/s2", r.name) for r in noisy[::-1]]
-    one = rocking.fragility(noisy, BLOCK, intensity=LEVELS)
-    other = rocking.fragility(mirrored, BLOCK, intensity=LEVELS).isel(record=slice(None, None, -1))
-    np.testing.assert_array_equal(one.peak_rotation, other.peak_rotation)
-    np.testing.assert_array_equal(one.median_intensity, other.median_intensity)
+    fragility = rocking.fragility(noisy, BLOCK, intensity=LEVELS)
+    of_mirrored = rocking.fragility(mirrored, BLOCK, intensity=LEVELS).isel(record=slice(None, None, -1))
+    np.testing.assert_array_equal(fragility.peak_rotation, of_mirrored.peak_rotation)
+    np.testing.assert_array_equal(fragility.median_intensity, of_mirrored.median_intensity)
 
 
 def test_single_block_and_limit_state_have_no_dimension(noisy):
@@ -116,19 +116,19 @@ def test_single_block_and_limit_state_have_no_dimension(noisy):
 
 def test_records_have_names_digests_and_measures(noisy):
     unnamed = rocking.Record(noisy[0].acceleration, noisy[0].time_step, "m/s2")
-    found = rocking.fragility([noisy[0], noisy[0], unnamed], BLOCK, intensity=[3.0])
-    assert found.record.values.tolist() == ["noise 0 (1)", "noise 0 (2)", "record 3"]
-    assert set(found.digest.values) == {noisy[0].digest}
-    assert float(found.peak_velocity[2]) == noisy[0].peak_velocity
+    fragility = rocking.fragility([noisy[0], noisy[0], unnamed], BLOCK, intensity=[3.0])
+    assert fragility.record.values.tolist() == ["noise 0 (1)", "noise 0 (2)", "record 3"]
+    assert set(fragility.digest.values) == {noisy[0].digest}
+    assert float(fragility.peak_velocity[2]) == noisy[0].peak_velocity
 
 
 def test_every_variable_has_unit_and_meaning(noisy):
-    found = rocking.fragility(noisy, [BLOCK], intensity=LEVELS, demand=["overturning"])
-    for name, variable in found.variables.items():
+    fragility = rocking.fragility(noisy, [BLOCK], intensity=LEVELS, demand=["overturning"])
+    for name, variable in fragility.variables.items():
         assert variable.attrs["long_name"], name
         assert variable.dtype.kind == "U" or variable.attrs["units"], name
-    assert found.attrs == {"measure": "pga", "confidence": 0.95}
-    assert found.median_intensity.attrs["units"] == "m s-2"
+    assert fragility.attrs == {"measure": "pga", "confidence": 0.95}
+    assert fragility.median_intensity.attrs["units"] == "m s-2"
 
 
 @pytest.mark.parametrize(
@@ -156,9 +156,9 @@ def test_every_variable_has_unit_and_meaning(noisy):
     ],
 )
 def test_invalid_arguments_are_named(noisy, arguments, name):
-    given = {"records": noisy[:1], "blocks": BLOCK, "intensity": [3.0]} | arguments
+    values = {"records": noisy[:1], "blocks": BLOCK, "intensity": [3.0]} | arguments
     with pytest.raises(InvalidArgumentError) as error:
-        rocking.fragility(given.pop("records"), given.pop("blocks"), **given)
+        rocking.fragility(values.pop("records"), values.pop("blocks"), **values)
     assert error.value.parameter == name
 
 
@@ -186,42 +186,44 @@ def test_an_array_of_bodies_has_the_fragility_of_each_block(noisy, by_bodies):
 def test_a_lazy_array_of_bodies_has_the_same_fragility(noisy, by_bodies):
     lazy = rocking.fragility(noisy[:3], rocking.RigidBody.from_size(WIDTH.chunk(w=1), HEIGHT), **OPTIONS)
     assert lazy.fraction.chunks == ((2,), (1, 1), (3,), (6,))
-    found = lazy.compute()
-    xr.testing.assert_allclose(found, by_bodies, rtol=1e-11)  # bodies of a chunk share the sizes of their Taylor steps
-    np.testing.assert_array_equal(found.overturned, by_bodies.overturned)
-    assert all(equal_values(one.attrs, by_bodies[name].attrs) for name, one in found.variables.items())
+    computed = lazy.compute()
+    xr.testing.assert_allclose(
+        computed, by_bodies, rtol=1e-11
+    )  # bodies of a chunk share the sizes of their Taylor steps
+    np.testing.assert_array_equal(computed.overturned, by_bodies.overturned)
+    assert all(equal_values(variable.attrs, by_bodies[name].attrs) for name, variable in computed.variables.items())
 
 
 def test_bodies_of_another_inertia_are_blocks_of_the_same_alpha_and_p(noisy):
     body = rocking.RigidBody(0.2, 0.2, [0.8, 1.0], gyration=0.3)
-    found = rocking.fragility(noisy[:3], body, **OPTIONS)
+    of_bodies = rocking.fragility(noisy[:3], body, **OPTIONS)
     edge = body.right
     for k in range(2):
-        alpha, p, eta = (float(each[k]) for each in (edge.alpha, edge.frequency_parameter, edge.restitution))
-        one = rocking.fragility(noisy[:3], rocking.EquivalentBlock(alpha, p, restitution=eta), **OPTIONS)
-        np.testing.assert_array_equal(found.overturned.isel(dim_0=k), one.overturned)
-        np.testing.assert_allclose(found.peak_rotation.isel(dim_0=k), one.peak_rotation, rtol=1e-9)
+        alpha, p, eta = (float(column[k]) for column in (edge.alpha, edge.frequency_parameter, edge.restitution))
+        of_block = rocking.fragility(noisy[:3], rocking.EquivalentBlock(alpha, p, restitution=eta), **OPTIONS)
+        np.testing.assert_array_equal(of_bodies.overturned.isel(dim_0=k), of_block.overturned)
+        np.testing.assert_allclose(of_bodies.peak_rotation.isel(dim_0=k), of_block.peak_rotation, rtol=1e-9)
 
 
 def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(noisy):
     motions, levels = noisy[:3], OPTIONS["intensity"]
     body = rocking.RigidBody([0.2, 0.3], [0.3, 0.2], 1.0)  # mirror images of each other
-    found = rocking.fragility(motions, body, intensity=levels, restitution=0.9)
-    assert found.record.values.tolist()[:2] == [motions[0].name, f"{motions[0].name}, mirrored"]
+    fragility = rocking.fragility(motions, body, intensity=levels, restitution=0.9)
+    assert fragility.record.values.tolist()[:2] == [motions[0].name, f"{motions[0].name}, mirrored"]
     for k in range(2):
-        one = rocking.RigidBody(*((0.2, 0.3), (0.3, 0.2))[k], 1.0)
+        single = rocking.RigidBody(*((0.2, 0.3), (0.3, 0.2))[k], 1.0)
         for n, motion in enumerate(motions):
             scale = levels / motion.peak_acceleration
-            for place, sign in enumerate((1.0, -1.0)):
-                given = rocking.Record(sign * motion.acceleration, motion.time_step, "m/s2")
-                outcome = one.response(given, scale=scale, restitution=0.9).outcome
-                np.testing.assert_array_equal(found.outcome.isel(dim_0=k, record=2 * n + place), outcome)
+            for mirrored, sign in enumerate((1.0, -1.0)):
+                record = rocking.Record(sign * motion.acceleration, motion.time_step, "m/s2")
+                outcome = single.response(record, scale=scale, restitution=0.9).outcome
+                np.testing.assert_array_equal(fragility.outcome.isel(dim_0=k, record=2 * n + mirrored), outcome)
     # the mirror image of a body under that of a record
-    np.testing.assert_array_equal(found.overturned[0, :, ::2], found.overturned[1, :, 1::2])
-    np.testing.assert_allclose(found.fraction, found.overturned.mean("record"))
-    low, high = binomial_interval(0.5 * found.exceedances.values, 3, 0.95)  # of three independent records
-    np.testing.assert_array_equal((found.fraction_lower, found.fraction_upper), (low, high))
-    assert found.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
+    np.testing.assert_array_equal(fragility.overturned[0, :, ::2], fragility.overturned[1, :, 1::2])
+    np.testing.assert_allclose(fragility.fraction, fragility.overturned.mean("record"))
+    low, high = binomial_interval(0.5 * fragility.exceedances.values, 3, 0.95)  # of three independent records
+    np.testing.assert_array_equal((fragility.fraction_lower, fragility.fraction_upper), (low, high))
+    assert fragility.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
 
 
 MOTIONS = [noise(seed) for seed in range(3)]
@@ -261,16 +263,16 @@ def test_a_block_that_survives_all_levels_has_no_margin():
 def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
     outcomes = outcomes_of(np.geomspace(0.3, 30.0, 8), "frequency_ratio")
     margins = record_margins(outcomes)
-    found, overturned = outcomes["overturning_intensity"].values, outcomes["overturned"].values.astype(bool)
-    assert np.isfinite(found).any()
+    mildest, overturned = outcomes["overturning_intensity"].values, outcomes["overturned"].values.astype(bool)
+    assert np.isfinite(mildest).any()
     levels = outcomes["intensity"].values
-    for k, n in np.argwhere(np.isfinite(found)):
-        assert found[k, n] >= levels[overturned[k, :, n]].max()
-        around = found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5])
+    for k, n in np.argwhere(np.isfinite(mildest)):
+        assert mildest[k, n] >= levels[overturned[k, :, n]].max()
+        around = mildest[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5])
         near = check_suite(MOTIONS[n], TWO[k], around, "frequency_ratio", "momentum")
         assert suite_outcomes(near)["overturned"].values.ravel().tolist() == [1, 0]
         assert margins["overturning_scale"][k, n] == 1.0
-        survived = ~overturned[k, :, n] & (levels < found[k, n])
+        survived = ~overturned[k, :, n] & (levels < mildest[k, n])
         assert margins["levels_survived_above"][k, n] == survived.sum()
 
 
@@ -287,17 +289,17 @@ def with_vertical(seed: int, share: float = 0.5) -> rocking.Record:
 @pytest.mark.parametrize("measure", ["pga", "frequency_ratio"])
 def test_outcomes_are_those_of_the_single_blocks(measure: str) -> None:
     records = [with_vertical(1), noise(2)]
-    found = rocking.fragility(records, BLOCKS, intensity=FEW_LEVELS, measure=measure)
-    for place in np.ndindex(2, 4, 2):
-        body, level, record = BLOCKS[place[0]], FEW_LEVELS[place[1]], records[place[2]]
+    fragility = rocking.fragility(records, BLOCKS, intensity=FEW_LEVELS, measure=measure)
+    for index in np.ndindex(2, 4, 2):
+        body, level, record = BLOCKS[index[0]], FEW_LEVELS[index[1]], records[index[2]]
         eta = body.inelastic_restitution
         if measure == "frequency_ratio":
-            own = 2.0 * np.pi / (record.mean_period * body.frequency_parameter)
-            size = body.half_diagonal * (level / own) ** 2
+            ratio = 2.0 * np.pi / (record.mean_period * body.frequency_parameter)
+            size = body.half_diagonal * (level / ratio) ** 2
             body = rocking.Block.from_slenderness_angle(body.alpha, size, gravity=body.gravity)
-        alone = body.response(record, scale=float(found["scale"].values[place]), restitution=eta, thresholds=False)
-        assert found["overturned"].values[place] == alone.overturned
-        assert found["peak_rotation"].values[place] == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
+        alone = body.response(record, scale=float(fragility["scale"].values[index]), restitution=eta, thresholds=False)
+        assert fragility["overturned"].values[index] == alone.overturned
+        assert fragility["peak_rotation"].values[index] == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
 
 
 def test_a_level_at_which_a_body_would_fly_is_refused() -> None:

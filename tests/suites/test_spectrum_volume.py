@@ -24,25 +24,25 @@ def test_from_no_uplift_to_overturning():
 
 
 def test_volumes_of_parts_add_up_to_that_of_the_whole():
-    whole = spectrum_volume(RECORD, points=8)
+    full = spectrum_volume(RECORD, points=8)
     parts = [
         spectrum_volume(RECORD, frequency_parameter=p, alpha=alpha, points=4)
         for p in ((1.0, 2.5), (2.5, 4.0))
         for alpha in ((0.1, 0.25), (0.25, 0.4))
     ]
-    assert sum(part["volume"].item() for part in parts) == pytest.approx(whole["volume"].item(), rel=1e-12)
-    assert 0.0 < whole["mean"] < 1.0
+    assert sum(part["volume"].item() for part in parts) == pytest.approx(full["volume"].item(), rel=1e-12)
+    assert 0.0 < full["mean"] < 1.0
 
 
 def test_its_heights_are_responses_of_blocks():
     ends = {"frequency_parameter": (2.0, 2.2), "alpha": (0.2, 0.24)}
-    found = spectrum_volume(RECORD, **ends, points=2)
+    spectrum = spectrum_volume(RECORD, **ends, points=2)
     peaks = [
         rocking.Block.from_slenderness_angle(alpha, 0.75 * 9.80665 / p**2).response(RECORD).peak_rotation
         for p in (2.05, 2.15)
         for alpha in (0.21, 0.23)
     ]
-    assert found["mean"].item() == pytest.approx(np.mean(np.minimum(np.nan_to_num(peaks, nan=1.0), 1.0)), rel=1e-9)
+    assert spectrum["mean"].item() == pytest.approx(np.mean(np.minimum(np.nan_to_num(peaks, nan=1.0), 1.0)), rel=1e-9)
 
 
 def test_refusals():

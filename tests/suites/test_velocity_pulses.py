@@ -30,22 +30,22 @@ def planted(family, seed):
     return VelocityPulse(family, period, centre, math.nan, math.nan, 0.8 * draw.choice([-1, 1]), 1.0)
 
 
-def angle_between(one, other):
-    return abs((one - other + math.pi) % (2.0 * math.pi) - math.pi)
+def angle_between(angle, other):
+    return abs((angle - other + math.pi) % (2.0 * math.pi) - math.pi)
 
 
 @pytest.mark.parametrize("seed", but_long(range(12), 0, 1, 2))
 @pytest.mark.parametrize("family", FAMILIES)
 def test_planted_pulse_is_found_in_noise_of_40_decibel(family, seed):
     pulse = planted(family, seed)
-    found = fit_velocity(noisy(pulse.velocity(TIME), 40.0, seed), STEP, family)
-    assert found.period == pytest.approx(pulse.period, rel=0.01)
-    assert found.centre == pytest.approx(pulse.centre, abs=0.01 * pulse.period)
-    assert found.amplitude == pytest.approx(pulse.amplitude, rel=0.01)
-    assert found.explained == pytest.approx(1.0 - 1e-4, abs=1e-4)
+    fit = fit_velocity(noisy(pulse.velocity(TIME), 40.0, seed), STEP, family)
+    assert fit.period == pytest.approx(pulse.period, rel=0.01)
+    assert fit.centre == pytest.approx(pulse.centre, abs=0.01 * pulse.period)
+    assert fit.amplitude == pytest.approx(pulse.amplitude, rel=0.01)
+    assert fit.explained == pytest.approx(1.0 - 1e-4, abs=1e-4)
     if family == MP:
-        assert angle_between(found.phase, pulse.phase) < 0.02
-        assert found.cycles == pytest.approx(pulse.cycles, rel=0.02)
+        assert angle_between(fit.phase, pulse.phase) < 0.02
+        assert fit.cycles == pytest.approx(pulse.cycles, rel=0.02)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -61,19 +61,19 @@ def test_acceleration_is_the_derivative_of_the_velocity(family):
 
 def test_amplitude_and_time_scale_the_fit():
     velocity = noisy(planted(MP, 1).velocity(TIME), 20.0, 4)
-    one, other = fit_velocity(velocity, STEP, MP), fit_velocity(-3.0 * velocity, 0.5 * STEP, MP)
-    assert other.period == pytest.approx(0.5 * one.period, rel=1e-6)
-    assert other.amplitude == pytest.approx(3.0 * one.amplitude, rel=1e-6)
-    assert angle_between(other.phase, one.phase + math.pi) < 1e-5
-    assert other.explained == pytest.approx(one.explained, abs=1e-9)
+    fit, scaled = fit_velocity(velocity, STEP, MP), fit_velocity(-3.0 * velocity, 0.5 * STEP, MP)
+    assert scaled.period == pytest.approx(0.5 * fit.period, rel=1e-6)
+    assert scaled.amplitude == pytest.approx(3.0 * fit.amplitude, rel=1e-6)
+    assert angle_between(scaled.phase, fit.phase + math.pi) < 1e-5
+    assert scaled.explained == pytest.approx(fit.explained, abs=1e-9)
 
 
 def test_explained_share_is_that_of_the_fitted_velocity():
     velocity = noisy(planted(MP, 1).velocity(TIME), 3.0, 4)
-    found = fit_velocity(velocity, STEP, MP)
-    residual = velocity - found.velocity(TIME)
-    assert found.explained == pytest.approx(1.0 - residual @ residual / (velocity @ velocity), abs=1e-9)
-    assert 0.5 < found.explained < 0.9
+    fit = fit_velocity(velocity, STEP, MP)
+    residual = velocity - fit.velocity(TIME)
+    assert fit.explained == pytest.approx(1.0 - residual @ residual / (velocity @ velocity), abs=1e-9)
+    assert 0.5 < fit.explained < 0.9
 
 
 @pytest.mark.parametrize("velocity", [np.ones(10), np.zeros(100), np.full(100, np.nan)])
@@ -86,8 +86,8 @@ def record_of(name, period, step=0.005, peak=2.0, lead=400, **parameters):
     """A record of a pulse of the catalogue after `lead` samples of rest."""
     pulse = rocking.pulse(name, **parameters)
     phi = np.arange(pulse.start, pulse.end, 2 * math.pi * step / period)
-    rest = np.zeros(lead)
-    return rocking.Record(np.concatenate([rest, peak * pulse.acceleration(phi), rest]), step, "m/s2", name)
+    zeros = np.zeros(lead)
+    return rocking.Record(np.concatenate([zeros, peak * pulse.acceleration(phi), zeros]), step, "m/s2", name)
 
 
 @pytest.mark.parametrize("name", ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"])
@@ -123,13 +123,13 @@ def test_fit_describes_a_record_and_gives_the_ratio_of_scales():
 
 def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     record = sampled("sine", 4.0, samples=8000)
-    given = {"restitution": BLOCK.inelastic_restitution, "alpha": BLOCK.alpha}
-    exact = rocking.thresholds("sine", frequency_ratio=4.0, **given, highest=10.0)
-    found = BLOCK.thresholds(record)
-    amplitude = found.value * record.peak_acceleration / BLOCK.uplift_acceleration
+    block = {"restitution": BLOCK.inelastic_restitution, "alpha": BLOCK.alpha}
+    exact = rocking.thresholds("sine", frequency_ratio=4.0, **block, highest=10.0)
+    thresholds = BLOCK.thresholds(record)
+    amplitude = thresholds.value * record.peak_acceleration / BLOCK.uplift_acceleration
     np.testing.assert_allclose(amplitude, exact.amplitude, rtol=1e-4)
-    assert found.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
-    assert found.searched[1] == pytest.approx(10.0 * found.searched[0])
+    assert thresholds.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
+    assert thresholds.searched[1] == pytest.approx(10.0 * thresholds.searched[0])
 
 
 @pytest.mark.parametrize("wrong", [{"record": 1.0}, {"family": "gabor"}, {"blocks": [0.2]}])

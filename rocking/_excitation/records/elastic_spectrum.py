@@ -35,7 +35,7 @@ def elastic_spectrum(
     component: Literal["horizontal", "vertical"] = "horizontal",
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Largest responses of linear oscillators to a record: displacement and pseudo-acceleration over the period.
+    """Compute the largest displacement and pseudo-acceleration of linear oscillators under a record over the period.
 
     The oscillator q'' + 2 zeta omega q' + omega^2 q = -a_g is solved exactly for an acceleration that is linear between
     samples (Nigam & Jennings 1969; `floor_motion`). The largest displacement is that of all times, between the samples
@@ -76,20 +76,23 @@ def elastic_spectrum(
     samples = record.acceleration if component == "horizontal" else record.vertical
     if samples is None:
         raise InvalidArgumentError("component", component, "horizontal: the record has no vertical component")
-    given = {"periods": (periods, *PERIODS, "both", "s"), "damping": (damping, 0.0, 1.0, "left", "-")}
+    ranges = {"periods": (periods, *PERIODS, "both", "s"), "damping": (damping, 0.0, 1.0, "left", "-")}
     checked = {}
-    for name, (value, low, high, closed, unit) in given.items():
+    for name, (value, low, high, closed, unit) in ranges.items():
         checked[name] = np.atleast_1d(in_range(name, value, low, high, closed=closed, unit=unit))
         if checked[name].ndim != 1 or not checked[name].size:
             raise InvalidArgumentError(name, checked[name].shape, "one dimension, one value or more")
     period, zeta = checked.values()
-    found = np.array([[largest_displacement(samples, record.time_step, t, z, stop) for t in period] for z in zeta])
+    displacement = np.empty((zeta.size, period.size))
+    for k, ratio in enumerate(zeta.tolist()):
+        for n, oscillator_period in enumerate(period.tolist()):
+            displacement[k, n] = largest_displacement(samples, record.time_step, oscillator_period, ratio, stop)
     omega = 2.0 * math.pi / period
     names = "damping", "period"
     return xr.Dataset(
         {
-            "displacement": (names, found, {"units": "m", "long_name": "spectral displacement S_D"}),
-            "pseudo_acceleration": (names, omega**2 * found, {"units": "m s-2", "long_name": "omega^2 S_D"}),
+            "displacement": (names, displacement, {"units": "m", "long_name": "spectral displacement S_D"}),
+            "pseudo_acceleration": (names, omega**2 * displacement, {"units": "m s-2", "long_name": "omega^2 S_D"}),
         },
         {
             "damping": ("damping", zeta, {"units": "1", "long_name": "damping ratio zeta"}),
@@ -100,7 +103,7 @@ def elastic_spectrum(
 
 
 def largest_displacement(a: Array, h: float, period: float, ratio: float, stop: StopFlag | None = None) -> float:
-    """Largest |q| [m] of an oscillator under samples `a` [m/s2] of step h [s], of all times."""
+    """Return the largest |q| [m] of an oscillator under samples `a` [m/s2] of step h [s], of all times."""
     if stop is not None:
         stop.check()
     root = oscillator_root(2.0 * math.pi / period, ratio)
@@ -126,10 +129,10 @@ def largest_displacement(a: Array, h: float, period: float, ratio: float, stop: 
 
 
 def _after(root: complex, z: NDArray[np.complex128], a: Array, slope: Array, time: Array) -> NDArray[np.complex128]:
-    """z after a time within a step: e^w z + t phi_1(w) a + t^2 phi_2(w) a', w = lambda t."""
+    """Return z after a time within a step: e^w z + t phi_1(w) a + t^2 phi_2(w) a', w = lambda t."""
     w = root * time
     first, second = np.zeros_like(w), np.zeros_like(w)
     for k in range(TERMS, -1, -1):
         first, second = first * w + 1.0 / math.factorial(k + 1), second * w + 1.0 / math.factorial(k + 2)
-    found: NDArray[np.complex128] = np.exp(w) * z + time * first * a + time * time * second * slope
-    return found
+    state: NDArray[np.complex128] = np.exp(w) * z + time * first * a + time * time * second * slope
+    return state

@@ -33,7 +33,7 @@ def floor_motion(
     tail: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> Record:
-    """The motion of a floor of a linear structure under a record, as a record of its absolute acceleration.
+    """Compute the motion of a floor of a linear structure under a record, as a record of its absolute acceleration.
 
     Each mode n is an oscillator q'' + 2 zeta omega q' + omega^2 q = -a_g, and the floor has the acceleration
     a_g + sum of Gamma_n q_n'' (Chopra 2017, section 13.1), so that what the modes leave of the sum of Gamma_n to 1
@@ -83,8 +83,8 @@ def floor_motion(
     period = np.atleast_1d(in_range("periods", periods, *PERIODS, unit="s"))
     zeta = in_range("damping", damping, 0.0, 1.0, closed="left")
     gamma = in_range("participation", participation, -100.0, 100.0)
-    given = {"periods": periods, "damping": damping, "participation": participation}
-    period, zeta, gamma = broadcast(given, (period, zeta, gamma))
+    arguments = {"periods": periods, "damping": damping, "participation": participation}
+    period, zeta, gamma = broadcast(arguments, (period, zeta, gamma))
     if period.ndim != 1 or not period.size:
         raise InvalidArgumentError("periods", period.shape, "one dimension, one period or more")
     modes = 2.0 * math.pi / period, zeta, gamma
@@ -109,11 +109,14 @@ def floor_motion(
         if error <= allowed * np.abs(horizontal).max():
             break
         parts *= 2
-    upwards = None if record.vertical is None else refined(record.vertical, parts)
-    if upwards is not None:
-        upwards = _floor(upwards, step, extra, *modes, stop) if vertical == "filter" else np.pad(upwards, (0, extra))
-    what = f"floor motion of periods {', '.join(f'{one:g}' for one in period)} s, step {step:g} s"
-    source = f"{record.source}; {what}, linear between samples to {error:.2g} m/s2".removeprefix("; ")
+    upwards = None
+    if record.vertical is not None and vertical == "filter":
+        upwards = _floor(refined(record.vertical, parts), step, extra, *modes, stop)
+    elif record.vertical is not None:
+        upwards = np.pad(refined(record.vertical, parts), (0, extra))
+    periods_text = ", ".join(f"{value:g}" for value in period)
+    remark = f"floor motion of periods {periods_text} s, step {step:g} s"
+    source = f"{record.source}; {remark}, linear between samples to {error:.2g} m/s2".removeprefix("; ")
     return Record(horizontal, step, "m/s2", record.name, source, record.remarks, vertical=upwards)
 
 
@@ -125,7 +128,7 @@ def isolated_motion(
     vertical: Literal["pass", "filter"] = "pass",
     relative_tolerance: Scalar = 1e-3,
 ) -> Record:
-    """The motion above a linear base isolation, as a record: `floor_motion` of one mode with the whole mass.
+    """Compute the motion above a linear base isolation, as a record: `floor_motion` of one mode with the whole mass.
 
     Parameters
     ----------
@@ -143,19 +146,21 @@ def isolated_motion(
     InvalidArgumentError
         As for `floor_motion`.
     """
-    one = number("period", period, *PERIODS, unit="s")
+    checked_period = number("period", period, *PERIODS, unit="s")
     zeta = number("damping", damping, 0.0, 1.0, closed="left")
-    return floor_motion(record, periods=one, damping=zeta, vertical=vertical, relative_tolerance=relative_tolerance)
+    return floor_motion(
+        record, periods=checked_period, damping=zeta, vertical=vertical, relative_tolerance=relative_tolerance
+    )
 
 
 def refined(a: Array, parts: int) -> Array:
-    """The samples at 1/parts of the step."""
+    """Interpolate the samples at 1/parts of the step."""
     return np.interp(np.arange((a.size - 1) * parts + 1) / parts, np.arange(a.size), a)
 
 
 def _floor(a: Array, h: float, extra: int, omega: Array, zeta: Array, gamma: Array, stop: StopFlag | None) -> Array:
-    """Acceleration of the floor at the samples of `a`, of step h [s], and at `extra` ones of free vibration."""
-    found = np.pad((1.0 - gamma.sum()) * a, (0, extra))
+    """Return the acceleration of the floor at the samples of `a`, of step h [s], and `extra` ones of free vibration."""
+    acceleration = np.pad((1.0 - gamma.sum()) * a, (0, extra))
     for frequency, ratio, factor in zip(omega, zeta, gamma, strict=True):
         if stop is not None:
             stop.check()
@@ -163,17 +168,17 @@ def _floor(a: Array, h: float, extra: int, omega: Array, zeta: Array, gamma: Arr
         z = oscillator_states(a, h, root)
         free = z[-1] * np.exp(root * h * np.arange(1, extra + 1))
         residue = (frequency**2 + 2.0 * ratio * frequency * root) / (2j * root.imag)
-        found += factor * 2.0 * (residue * np.concatenate([z, free])).real
-    return found
+        acceleration += factor * 2.0 * (residue * np.concatenate([z, free])).real
+    return acceleration
 
 
 def oscillator_root(frequency: float, ratio: float) -> complex:
-    """lambda = -zeta omega + i omega_d [1/s] of an oscillator with omega [rad/s] and zeta [-]."""
+    """Return lambda = -zeta omega + i omega_d [1/s] of an oscillator with omega [rad/s] and zeta [-]."""
     return complex(-ratio * frequency, frequency * math.sqrt(1.0 - ratio * ratio))
 
 
 def oscillator_states(a: Array, h: float, root: complex) -> NDArray[np.complex128]:
-    """The state z of z' = lambda z + a at the samples of `a`, linear over steps of h [s]; exact."""
+    """Return the state z of z' = lambda z + a at the samples of `a`, linear over steps of h [s]; exact."""
     from scipy.signal import lfilter  # noqa: PLC0415  # takes longer to load than the package
 
     w = root * h

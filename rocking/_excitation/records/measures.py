@@ -13,42 +13,42 @@ MAX_PADDING = 16  # samples with appended zeros over those of the record up to w
 
 
 def _from_zero(increments: Array) -> Array:
-    """Cumulative sums of increments (samples - 1,), zero at the first sample, read-only."""
+    """Return the cumulative sums of increments (samples - 1,), zero at the first sample, read-only."""
     sums = np.concatenate([[0.0], np.cumsum(increments)])
     sums.flags.writeable = False
     return sums
 
 
 def velocity(a: Array, dt: float) -> Array:
-    """Velocity at the samples, zero at the first: exact integral of the piecewise linear acceleration."""
+    """Return the velocity at the samples, zero at the first: exact integral of the piecewise linear acceleration."""
     return _from_zero(0.5 * dt * (a[1:] + a[:-1]))
 
 
 def displacement(a: Array, v: Array, dt: float) -> Array:
-    """Displacement at the samples, zero at the first: exact integral of the piecewise quadratic velocity `v`."""
+    """Return the displacement at the samples, zero at the first: exact integral of the quadratic velocity `v`."""
     return _from_zero(dt * v[:-1] + dt * dt / 6.0 * (2.0 * a[:-1] + a[1:]))
 
 
 def _energy_increments(a: Array, dt: float) -> Array:
-    """Integral of a^2 over each sample interval [m2/s3]."""
+    """Return the integral of a^2 over each sample interval [m2/s3]."""
     left, right = a[:-1], a[1:]
     return dt / 3.0 * (left * left + left * right + right * right)
 
 
 def arias_intensity(a: Array, dt: float) -> float:
-    """pi/(2 g) integral of a^2 dt [m/s] (Arias 1970)."""
+    """Return pi/(2 g) integral of a^2 dt [m/s] (Arias 1970)."""
     return float(math.pi / (2.0 * STANDARD_GRAVITY) * _energy_increments(a, dt).sum())
 
 
 def significant_duration(a: Array, dt: float, first: float = 0.05, last: float = 0.95) -> float:
-    """Time between two fractions of the Arias intensity [s] (Trifunac & Brady 1975), linear in a sample interval."""
+    """Return the time between two fractions of Arias intensity [s], linear in an interval (Trifunac & Brady 1975)."""
     energy = _from_zero(_energy_increments(a, dt))
     times = np.interp([first * energy[-1], last * energy[-1]], energy, np.arange(a.size) * dt)
     return float(times[1] - times[0])
 
 
 def mean_period(a: Array, dt: float) -> float:
-    """T_m = (sum of C^2/f)/(sum of C^2) [s] over the Fourier amplitudes C from 0.25 to 20 Hz (Rathje et al. 1998).
+    """Return T_m = (sum of C^2/f)/(sum of C^2) [s] over Fourier amplitudes C from 0.25 to 20 Hz (Rathje et al. 1998).
 
     Zeros are appended until the frequencies are at most 0.05 Hz apart; nan if none lies in the band. Of a record much
     shorter than 20 s only the frequencies of the band are computed, so that the memory is that of the record.

@@ -15,13 +15,13 @@ PAIR_ANGLES = 12
 """Directions in which the components of a pair are combined, over 180 degrees [-]; even."""
 
 
-def checked_pair(given: Any) -> tuple[Record, ...]:
-    """One record, or two with one step."""
-    pair, size = (given,), 1
-    if isinstance(given, Sequence):
-        pair, size = tuple(given), 2
+def checked_pair(records: Any) -> tuple[Record, ...]:
+    """Return a record, or two with the same step, as a tuple."""
+    pair, size = (records,), 1
+    if isinstance(records, Sequence):
+        pair, size = tuple(records), 2
     if len(pair) != size or not all(isinstance(record, Record) for record in pair):
-        raise InvalidArgumentError("records", given, "records, or pairs of two records")
+        raise InvalidArgumentError("records", records, "records, or pairs of two records")
     first, second = pair[0], pair[-1]
     if first.time_step != second.time_step:
         allowed = f"the time step of its first component, {first.time_step:g} s"
@@ -30,16 +30,17 @@ def checked_pair(given: Any) -> tuple[Record, ...]:
 
 
 def rotated(first: Record, second: Record) -> list[tuple[str, Record]]:
-    """Components of a pair along directions every 15 degrees below 180, with the name of the angle."""
+    """Return the components of a pair along directions every 15 degrees below 180, with the name of the angle."""
     size = max(first.samples, second.samples)
-    x, y = (np.pad(one.acceleration, (0, size - one.samples)) for one in (first, second))
-    vertical = next((one.vertical for one in (first, second) if one.vertical is not None), None)
+    x = np.pad(first.acceleration, (0, size - first.samples))
+    y = np.pad(second.acceleration, (0, size - second.samples))
+    vertical = second.vertical if first.vertical is None else first.vertical
     up = None if vertical is None else np.pad(vertical, (0, size - vertical.size))
     remarks = tuple(dict.fromkeys((*first.remarks, *second.remarks)))
-    found = []
+    components = []
     for k in range(PAIR_ANGLES):
         angle = math.pi * k / PAIR_ANGLES
         along = math.cos(angle) * x + math.sin(angle) * y
         record = Record(along, first.time_step, "m/s2", first.name, first.source, remarks, up)
-        found.append((f", {180 * k // PAIR_ANGLES} deg", record))
-    return found
+        components.append((f", {180 * k // PAIR_ANGLES} deg", record))
+    return components

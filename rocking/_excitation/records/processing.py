@@ -30,7 +30,7 @@ shaking [-]."""
 
 
 def offset_remark(a: Array) -> str | None:
-    """What is to be said before `a` (samples,) [m/s2] is scaled by its PGA; None if its offset is small.
+    """Return a remark for `a` (samples,) [m/s2] that is scaled by its PGA; None if its offset is small.
 
     The offset is the mean, or the level before the shaking, whichever is larger beside the largest acceleration about
     it.
@@ -40,7 +40,7 @@ def offset_remark(a: Array) -> str | None:
     count = int(quiet.argmax()) if quiet.any() else 0
     if count >= QUIET[0]:
         levels["level before the shaking"] = float(a[:count].mean())
-    name = max(levels, key=lambda one: abs(levels[one]))
+    name = max(levels, key=lambda key: abs(levels[key]))
     shaking = float(np.abs(a - levels[name]).max())
     if abs(levels[name]) <= OFFSET_SHARE * shaking:
         return None
@@ -51,7 +51,7 @@ def offset_remark(a: Array) -> str | None:
 
 
 def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
-    """The acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).
+    """Return the acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).
 
     The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the `duration`
     [s]: the least-squares problem is then well conditioned for the degrees allowed. At least `order` + 2 samples are
@@ -68,7 +68,7 @@ def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
 
 
 def resample(a: Array, dt: float, time_step: Scalar) -> Array:
-    """The samples of the band-limited signal at the step `time_step`, zero outside of the record."""
+    """Return the samples of the band-limited signal at the step `time_step`, zero outside of the record."""
     step = positive("time_step", time_step, "s")
     ratio = Fraction(dt / step).limit_denominator(MAX_RATIO)
     if not 1 <= ratio.numerator <= MAX_RATIO or abs(float(ratio) * step / dt - 1.0) > RATIO_TOLERANCE:
@@ -84,7 +84,7 @@ def resample(a: Array, dt: float, time_step: Scalar) -> Array:
 
 
 def _interpolated(a: Array, up: int, down: int, count: int) -> Array:
-    """Values (count,) of the band-limited signal at multiples of down/up steps: a convolution with a windowed sinc.
+    """Convolve with a windowed sinc: values (count,) of the band-limited signal at multiples of down/up steps.
 
     As `scipy.signal.resample_poly`, which takes longer to load than all other parts of a response to a record. The
     filter is stated at 1/up of a step and cuts off at the lower of the two Nyquist frequencies.
@@ -94,8 +94,8 @@ def _interpolated(a: Array, up: int, down: int, count: int) -> Array:
     taps = 2 * half // up + 1
     h = np.pad(up / h.sum() * h, (0, taps * up - h.size))
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(a, taps), taps)
-    found = np.empty(count)
+    values = np.empty(count)
     for i in range(min(up, count)):  # every up-th value has the same part of the filter
         last, part = divmod(i * down + half, up)
-        found[i::up] = windows[last + 1 :: down][: found[i::up].size] @ h[part::up][::-1]
-    return found
+        values[i::up] = windows[last + 1 :: down][: values[i::up].size] @ h[part::up][::-1]
+    return values

@@ -113,13 +113,13 @@ class Record(AbstractMotion):
         if upwards is not None and upwards.shape != samples.shape:
             allowed = f"one value for each of the {samples.size} samples of the horizontal acceleration"
             raise InvalidArgumentError("vertical", f"shape {upwards.shape}", allowed)
-        about = {"name": name, "source": source, "remarks": tuple(remarks)}
+        texts = {"name": name, "source": source, "remarks": tuple(remarks)}
         components = {"acceleration": samples * factor}  # new arrays, which the caller cannot change
         if upwards is not None:
             components["vertical"] = upwards * factor
         for component in components.values():
             component.flags.writeable = False
-        vars(self).update({"vertical": None, **components, "time_step": step, **about})
+        vars(self).update({"vertical": None, **components, "time_step": step, **texts})
 
     def __repr__(self) -> str:
         """Name, length, step and peak accelerations."""
@@ -157,10 +157,10 @@ class Record(AbstractMotion):
 
         The samples of a vertical component follow after the eight bytes "vertical", a number that no sample has.
         """
-        found = hashlib.sha256(np.concatenate([[self.time_step], self.acceleration]).astype("<f8").tobytes())
+        digest = hashlib.sha256(np.concatenate([[self.time_step], self.acceleration]).astype("<f8").tobytes())
         if self.vertical is not None:
-            found.update(b"vertical" + self.vertical.astype("<f8").tobytes())
-        return found.hexdigest()
+            digest.update(b"vertical" + self.vertical.astype("<f8").tobytes())
+        return digest.hexdigest()
 
     @cached_property
     def peak_acceleration(self) -> float:
@@ -183,7 +183,7 @@ class Record(AbstractMotion):
         return abs(self.final_velocity) / self.peak_velocity
 
     def refined(self) -> Record | None:
-        """The record interpolated band-limited at an eighth of its step; None if that is too long or too small."""
+        """Resample the record at an eighth of its step; None if that has too many samples or too small a step."""
         step = self.time_step / REFINEMENT
         if self.samples * REFINEMENT > MAX_REFINED or step < TIME_STEP[0]:
             return None
@@ -195,7 +195,7 @@ class Record(AbstractMotion):
         return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / self.time_step)
 
     def rate_at(self, frequency_parameter: Array, period: Array) -> Array:
-        """p times the time step [-], checked."""
+        """Return p times the time step [-], checked."""
         del period
         p = in_range("frequency_parameter", frequency_parameter, *self.frequency_parameters, unit="rad/s")
         return np.asarray(p * self.time_step)
@@ -257,7 +257,7 @@ class Record(AbstractMotion):
         return measures.mean_period(self.acceleration, self.time_step)
 
     def baseline_corrected(self, *, order: int | None = 1) -> Record:
-        """The record without the drift of its velocity; the same for its vertical component.
+        """Remove the drift of the velocity of both components.
 
         The velocity is fitted by a polynomial of degree `order` + 1 that is zero at the first sample; its derivative, a
         polynomial of degree `order`, is subtracted from the acceleration.
@@ -281,12 +281,12 @@ class Record(AbstractMotion):
         return self._processed(corrected, self.time_step, f"baseline of order {order} removed")
 
     def mirrored(self) -> Record:
-        """The record with the other sign of its horizontal acceleration."""
+        """Return the record with the other sign of its horizontal acceleration."""
         name = f"{self.name}, mirrored" if self.name else ""
         return Record(-self.acceleration, self.time_step, "m/s2", name, self.source, self.remarks, self.vertical)
 
     def resampled(self, time_step: Scalar) -> Record:
-        """The record at another step, by band-limited interpolation with anti-aliasing.
+        """Resample the record at another step, by band-limited interpolation with anti-aliasing.
 
         The answers of the solver belong to a motion that is linear between the samples; comparing them with those of a
         record resampled at a fraction of the step shows how much this assumption matters.
@@ -310,11 +310,10 @@ class Record(AbstractMotion):
         return self._processed(resampled, step, f"resampled from {self.time_step:g} s, band-limited")
 
     def _processed(self, process: Callable[[Array], Array], time_step: float, what: str) -> Record:
-        """The record with other samples of both components [m/s2]; its source says what was done."""
+        """Return the record with other samples of both components [m/s2]; its source says what was done."""
         source = f"{self.source}; {what}" if self.source else what
         vertical = None if self.vertical is None else process(self.vertical)
-        about = self.name, source, self.remarks
-        return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)
+        return Record(process(self.acceleration), time_step, "m/s2", self.name, source, self.remarks, vertical)
 
 
 SUMMARY = {
@@ -335,17 +334,20 @@ SUMMARY = {
 
 
 def summary_of(record: Record) -> dict[str, Any]:
-    """The values of `SUMMARY` by name; None for a measure that the record does not have."""
-    found = {name: getattr(record, name) for name in SUMMARY} | {"mean_period": finite(record.mean_period)}
-    return found | ({"peak_vertical_acceleration": None} if record.vertical is None else {})
+    """Return the values of `SUMMARY` by name; None for a measure that the record does not have."""
+    values = {name: getattr(record, name) for name in SUMMARY} | {"mean_period": finite(record.mean_period)}
+    if record.vertical is None:
+        values["peak_vertical_acceleration"] = None
+    return values
 
 
-def offset_doubts(records: Sequence[Record], most: int = 5) -> list[str]:
-    """Remarks on the records whose offset is not small, which scaling by PGA or PGV would amplify."""
-    found = []
+def offset_doubts(records: Sequence[Record], limit: int = 5) -> list[str]:
+    """Return remarks on the records whose offset is not small, which scaling by PGA or PGV would amplify."""
+    remarks = []
     for record in records:
         text = offset_remark(record.acceleration)
         if text is not None:
-            found.append(f"{record.name or 'a record'}: {text}")
-    more = [f"{len(found) - most} more records have offsets that are not small"] if len(found) > most else []
-    return [*found[:most], *more]
+            remarks.append(f"{record.name or 'a record'}: {text}")
+    if len(remarks) > limit:
+        remarks[limit:] = [f"{len(remarks) - limit} more records have offsets that are not small"]
+    return remarks

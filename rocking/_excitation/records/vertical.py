@@ -18,7 +18,7 @@ FLIGHT_MARGIN = 1e-9
 
 
 def check_vertical_scale(motion: AbstractMotion, vertical_scale: ArrayLike | None) -> Array:
-    """The factor of the vertical component as a float64 array of its own shape; 0 for a record that has none.
+    """Return the factor of the vertical component as a float64 array of its own shape; 0 for a record that has none.
 
     Raises `InvalidArgumentError` if a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical
     component, or is so large that the acceleration reaches -g.
@@ -34,7 +34,7 @@ def check_vertical_scale(motion: AbstractMotion, vertical_scale: ArrayLike | Non
 
 
 def check_one_vertical_scale(motion: AbstractMotion, vertical_scale: Scalar | None) -> float:
-    """The same for one number."""
+    """Return one factor of the vertical component, checked as by `check_vertical_scale`."""
     factor = 1.0 if vertical_scale is None else vertical_scale
     return float(check_vertical_scale(motion, number("vertical_scale", factor, 0.0, HIGHEST_VERTICAL_SCALE)))
 
@@ -52,7 +52,7 @@ def reject_flight(parameter: str, motion: AbstractMotion, factor: float, gravity
 
 
 def flight_text(motion: AbstractMotion, factor: float, gravity: float) -> str | None:
-    """Which factors are allowed, when and how far -g is exceeded with this one; None if it is not."""
+    """Describe the allowed factors, and when and how far this one exceeds -g; None if it does not."""
     if motion.vertical is None:
         return None
     pressing = 1.0 + factor * (STANDARD_GRAVITY / gravity) * (motion.vertical / STANDARD_GRAVITY)
@@ -70,6 +70,6 @@ def flight_text(motion: AbstractMotion, factor: float, gravity: float) -> str | 
 
 
 def highest_vertical_scale(motion: AbstractMotion, gravity: float = STANDARD_GRAVITY) -> float:
-    """Factor of a record just below that at which its vertical acceleration reaches -g [-]; infinite if none does."""
+    """Return the factor just below that at which the vertical acceleration reaches -g [-]; infinite if none does."""
     lowest = 0.0 if motion.vertical is None else float(motion.vertical.min())
     return (1.0 - FLIGHT_MARGIN) * gravity / -lowest if lowest < 0.0 else math.inf

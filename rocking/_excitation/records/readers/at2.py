@@ -13,7 +13,7 @@ COUNT_LINE = 3
 
 
 def is_at2(file: TextFile) -> bool:
-    """Whether the fourth line states NPTS and DT."""
+    """Return True if the fourth line states NPTS and DT."""
     return len(file.head) > COUNT_LINE and {"NPTS", "DT"} <= {*_words(file.head[COUNT_LINE])}
 
 
@@ -27,7 +27,7 @@ def read(file: TextFile, layout: Layout) -> Samples:
     if is_number(words[0]):
         count_text, step_text = words[:2]
     else:
-        count_text, step_text = (words[words.index(name) + 1] for name in ("NPTS", "DT"))
+        count_text, step_text = words[words.index("NPTS") + 1], words[words.index("DT") + 1]
     count = file.size(COUNT_LINE, count_text, "the number of points NPTS")
     step = file.number(COUNT_LINE, step_text.rstrip("SEC."), "the time step DT [s]")
     unit_line = file.head[UNIT_LINE]

@@ -47,7 +47,7 @@ MISSING = {"nan", "na", "n/a", "null", "none", "inf", "-inf"}  # in a row they a
 
 
 class Quantity(NamedTuple):
-    """What is read from a file: the argument for its column, its canonical names, its SI unit."""
+    """Quantity that is read from a file: the argument for its column, its canonical names, its SI unit."""
 
     argument: str
     names: tuple[str, ...]
@@ -82,7 +82,8 @@ class Table:
     def __init__(self, file: TextFile, layout: Layout, quantity: Quantity = ACCELERATION) -> None:
         self.file, self.layout, self.quantity = file, layout, quantity
         below = islice(file.lines(layout.skip), HEAD_LINES)
-        texts = [*islice(((k, line) for k, line in below if line.strip()), 2)]
+        filled = ((k, line) for k, line in below if line.strip())
+        texts = [*islice(filled, 2)]
         has_header = bool(texts) and not is_row(texts[0][1])
         if len(texts) <= has_header:
             raise file.error(None, f"{len(texts)} lines below those of `skip`".replace("`", ""), "rows of numbers")
@@ -95,13 +96,15 @@ class Table:
         self.header: list[Cell] = []
         if has_header:
             header = texts[0][1].strip("#% \t")
-            named = [_cell(text) for text in ([header] if self.width == 1 else self._names_of(header))]
-            named += [_cell("")] if len(named) == self.width - 1 and not cells[-1] else []
-            self.header = named if len(named) == self.width else []
+            names = [header] if self.width == 1 else self._names_of(header)
+            if len(names) == self.width - 1 and not cells[-1]:
+                names.append("")
+            if len(names) == self.width:
+                self.header = [_cell(name) for name in names]
         self.title_lines = layout.skip if self.header else self.first
 
     def _separator(self, row: str, header: str) -> str:
-        """The one sign between the cells of the first row."""
+        """Return the one sign between the cells of the first row."""
         parts = row.split('"')
         signs = [sign for sign in ",;\t" if sign in "".join(parts[::2])]
         if self.layout.decimal == "," and len(parts) == 1 and "," in signs:
@@ -124,7 +127,7 @@ class Table:
         return {ord(sign): self._sign for sign in signs if sign != self._sign}
 
     def cells_of(self, line: str) -> list[str]:
-        """The cells of a line."""
+        """Return the cells of a line."""
         if self.widths is not None:
             count, width = self.widths
             cells = [line[k * width : (k + 1) * width] for k in range(count)]
@@ -135,7 +138,7 @@ class Table:
         return [cell for cell in cells if cell] if self.widths or self._sign == " " else cells
 
     def _names_of(self, header: str) -> list[str]:
-        """The cells of the header; one that starts with a bracket behind a blank belongs to the one before."""
+        """Return the cells of the header; one that starts with a bracket behind a blank belongs to the one before."""
         names: list[str] = []
         for text in self.cells_of(header):
             if names and text[:1] in ("[", "(") and self._sign == " ":
@@ -166,15 +169,19 @@ class Table:
         stated as well.
         """
         layout = self.layout
-        texts = [*islice(self.file.lines(0), self.title_lines)]
-        cell = self.header[choice.samples] if self.header and choice.samples is not None else _cell("")
-        other = [(k, text.strip()) for k, text in [*texts, (self.header_line, cell.text)] if says_other_quantity(text)]
+        texts: list[tuple[int | None, str]] = [*islice(self.file.lines(0), self.title_lines)]
+        cell = _cell("")
+        if self.header and choice.samples is not None:
+            cell = self.header[choice.samples]
+        texts.append((self.header_line, cell.text))
+        other = [(k, text.strip()) for k, text in texts if says_other_quantity(text)]
         if other and (layout.format is None or layout.unit is None):
             raise self.file.other_quantity(*other[0])
         unit = UNITS[self.quantity.unit].get(str(layout.unit))
         if unit is not None and cell.bracket is not None and not other:
             in_name = unit_name(cell.bracket, self.quantity.unit)
-            other = [] if UNITS[self.quantity.unit].get(str(in_name)) == unit else [(self.header_line, cell.text)]
+            if UNITS[self.quantity.unit].get(str(in_name)) != unit:
+                other = [(self.header_line, cell.text)]
         remarks = [f"the file says {text}; {layout.unit} is used, as the argument `unit` says" for _, text in other]
         in_name = self._unit(choice.time, TIME)
         if in_name not in (None, choice.time_unit):
@@ -186,16 +193,18 @@ class Table:
     # the columns that are stated
 
     def choice(self) -> Choice:
-        """The columns and units that the arguments and the header state."""
+        """Return the columns and units that the arguments and the header state."""
         samples = self._column(self.layout.acceleration, self.quantity)
         time = self._column(self.layout.time, TIME) if self.layout.time_step is None else None
         unit = self.layout.unit or self._unit(samples, self.quantity)
         return Choice(samples, unit, time, self.layout.time_unit or self._unit(time, TIME))
 
     def missing(self, choice: Choice) -> list[str]:
-        """The arguments that are missing."""
+        """Return the arguments that are missing."""
         wrapped = self.layout.wrapped
-        missing = [] if wrapped or choice.samples is not None else [self.quantity.argument]
+        missing = []
+        if not wrapped and choice.samples is None:
+            missing.append(self.quantity.argument)
         if choice.time is None and self.layout.time_step is None:
             missing.append("time_step" if wrapped or self.width == 1 else "time")
         elif choice.time is not None and choice.time_unit is None:
@@ -235,35 +244,37 @@ class Table:
                 expected = "a number, as below it; or another number of lines in `skip`"
                 raise self.error(self.first, column[0], expected, [])
 
-    def _column(self, stated: Column | None, quantity: Quantity) -> int | None:
-        """The column of an argument, or of a canonical name."""
-        if isinstance(stated, int):
-            if stated > self.width:
-                raise self.error(self.first, self.shown, f"column {stated}, as `{quantity.argument}` says", [])
-            return stated - 1
-        wanted = quantity.names if stated is None else (stated.strip().lower(),)
-        named = [k for k, cell in enumerate(self.header) if {cell.name.lower(), cell.text.lower()} & {*wanted}]
-        if stated is None:
+    def _column(self, argument: Column | None, quantity: Quantity) -> int | None:
+        """Return the column of an argument, or of a canonical name."""
+        if isinstance(argument, int):
+            if argument > self.width:
+                raise self.error(self.first, self.shown, f"column {argument}, as `{quantity.argument}` says", [])
+            return argument - 1
+        names = quantity.names if argument is None else (argument.strip().lower(),)
+        named = [k for k, cell in enumerate(self.header) if {cell.name.lower(), cell.text.lower()} & {*names}]
+        if argument is None:
             # a canonical name states nothing beside other columns in such units or, without a unit, beside any other
-            others = [k for k, cell in enumerate(self.header) if cell.name.lower() not in (*TIME.names, "vertical")]
-            alike = [k for k in others if self._unit(k, quantity)]
-            alone = quantity is TIME or named in (others, alike)
+            other_columns = [
+                k for k, cell in enumerate(self.header) if cell.name.lower() not in (*TIME.names, "vertical")
+            ]
+            alike = [k for k in other_columns if self._unit(k, quantity)]
+            alone = quantity is TIME or named in (other_columns, alike)
             return named[0] if len(named) == 1 and alone else None
         if len(named) == 1:
             return named[0]
-        if not named and wanted[0].isdecimal() and 0 < int(wanted[0][:5]) <= self.width:
-            return int(wanted[0][:5]) - 1
-        raise self.error(self.header_line, self.shown, f"one column {stated} for `{quantity.argument}`", [])
+        if not named and names[0].isdecimal() and 0 < int(names[0][:5]) <= self.width:
+            return int(names[0][:5]) - 1
+        raise self.error(self.header_line, self.shown, f"one column {argument} for `{quantity.argument}`", [])
 
     def _unit(self, column: int | None, quantity: Quantity) -> str | None:
-        """The unit in brackets in the name of a column."""
+        """Return the unit in brackets in the name of a column."""
         bracket = self.header[column].bracket if self.header and column is not None else None
         return None if bracket is None else unit_name(bracket, quantity.unit)
 
     # the rows
 
     def series(self) -> Array:
-        """All values, row by row; rows but the last are of one length."""
+        """Read all values, row by row; rows but the last are of one length."""
         values = array("d")
         short = None
         for k, line in self.file.lines(self.first):
@@ -278,25 +289,25 @@ class Table:
             values.extend(self._numbers(cells, lambda _, line=k: line))  # type: ignore[misc]
         return self.file.checked(np.frombuffer(values))
 
-    def columns(self, wanted: list[int], *, times: bool) -> list[Array]:
-        """Some columns; without `times` that show whether a row is missing, no line between the rows is blank."""
-        found = [array("d") for _ in wanted]
+    def columns(self, indices: list[int], *, times: bool) -> list[Array]:
+        """Read some columns; without `times` that show whether a row is missing, no line between the rows is blank."""
+        arrays = [array("d") for _ in indices]
         rows = 0
         for frame in self._frames():
             short = frame.iloc[:, -1].isna().to_numpy()
             if self._sign == " " and short.any():
                 expected = f"{self.width} cells, as in line {self.first + 1}"
                 raise self.error(self.line_of(rows + int(short.argmax())), "fewer cells", expected)
-            for values, column in zip(found, wanted, strict=True):
+            for values, column in zip(arrays, indices, strict=True):
                 values.extend(self._numbers(frame.iloc[:, column].tolist(), lambda k, row=rows: self.line_of(row + k)))  # type: ignore[misc]
             rows += len(frame)
             if rows > MAX_SAMPLES:
                 raise self.file.error(None, f"more than {MAX_SAMPLES} rows", f"at most {MAX_SAMPLES}")
         self._check_lines(rows, times)
-        return [np.frombuffer(values) for values in found]
+        return [np.frombuffer(values) for values in arrays]
 
     def _frames(self) -> Iterator[pd.DataFrame]:
-        """Parts of the rows as texts."""
+        """Yield parts of the rows as texts."""
         import pandas as pd  # noqa: PLC0415  # other commands and the rules of a workflow start without it
 
         start = 0
@@ -306,8 +317,8 @@ class Table:
         if self.widths is not None:
             body = "\n".join(",".join(self.cells_of(line)) for _, line in self.file.lines(self.first)).encode()
         elif self._translation:
-            others = bytes(self._translation)
-            body = body.translate(bytes.maketrans(others, self._sign.encode() * len(others)))
+            separators = bytes(self._translation)
+            body = body.translate(bytes.maketrans(separators, self._sign.encode() * len(separators)))
         sign = "," if self.widths is not None else self._sign
         options: dict[str, Any] = {"sep": r"\s+" if sign == " " else sign, "header": None, "skipinitialspace": True}
         options |= {"dtype": object, "keep_default_na": False, "chunksize": max(1, CELLS_AT_ONCE // self.width)}
@@ -326,7 +337,7 @@ class Table:
             raise self.file.error(None, str(error).strip(), "rows that pandas can read") from None
 
     def _numbers(self, texts: list[Any], line_of: Callable[[int], int]) -> list[float]:
-        """The numbers of some cells; `line_of` gives the line of one that is wrong."""
+        """Read the numbers of some cells; `line_of` gives the line of one that is wrong."""
         cells = [text.rstrip() if isinstance(text, str) else "" for text in texts]
         if self.layout.decimal == ",":  # a dot beside it is no number
             cells = [cell.replace(".", "?").replace(",", ".") for cell in cells]
@@ -344,7 +355,7 @@ class Table:
         raise self.error(line_of(wrong), text, expected)
 
     def line_of(self, row: int) -> int:
-        """The line of a row: rows are the lines that are not blank."""
+        """Return the line of a row: rows are the lines that are not blank."""
         lines = (k for k, line in self.file.lines(self.first) if line.strip())
         return next(islice(lines, row, None), self.first)
 
@@ -366,14 +377,14 @@ class Table:
     # messages
 
     def error(self, line: int | None, found: str, expected: str, missing: list[str] | None = None) -> RecordFileError:
-        """An error with the first lines of the file, and with arguments where `missing` ones can be said."""
+        """Return an error with the first lines of the file, and with arguments where `missing` ones can be said."""
         head = self.file.head[:SHOWN_LINES]
         lines = [f"line {k + 1}: {text[:SHOWN_SIGNS]}" for k, text in enumerate(head)]
         call = None if missing is None else self._call(missing)
         return RecordFileError(self.file.name, None if line is None else line + 1, found, expected, lines, call)
 
     def _call(self, missing: list[str]) -> dict[str, Any] | None:
-        """Arguments that would read the file; `...` for what cannot be said."""
+        """Return arguments that would read the file; `...` for what cannot be said."""
         call: dict[str, Any] = {}
         for field in fields(self.layout):
             value = getattr(self.layout, field.name)
@@ -384,7 +395,7 @@ class Table:
         return call | dict.fromkeys(missing, ...) if skip or missing else None
 
     def _lines_above(self, missing: list[str]) -> tuple[int, list[str]]:
-        """The number of lines above the names or the rows, 0 for what is stated, and what is missing beside it."""
+        """Return the number of lines above the names or rows, 0 for what is stated, and what is missing beside it."""
         head = self.file.head
         for skip in range(1, len(head) - 1) if self.layout.skip == 0 else ():
             with suppress(RecordFileError):
@@ -412,33 +423,34 @@ def read(file: TextFile, layout: Layout) -> Samples:
         values = table.series()
         text = "one series row by row"
     else:
-        wanted = [choice.samples] if choice.time is None else [choice.samples, choice.time]
-        values, *times = table.columns(wanted, times=choice.time is not None)
+        indices = [choice.samples] if choice.time is None else [choice.samples, choice.time]
+        values, *times = table.columns(indices, times=choice.time is not None)
         file.checked(values)
         if times:
             step = uniform_step(table, times[0] * UNITS["s"][str(choice.time_unit)])
         text = f"column {choice.samples + 1}"
         if table.header:
             text += f", {table.header[choice.samples].text}"
-            name += f" {table.header[choice.samples].name}" if layout.acceleration is not None else ""
+            if layout.acceleration is not None:
+                name += f" {table.header[choice.samples].name}"
     source = f"{file.name} ({text}, from line {table.first + 1})"
     return Samples(values, float(step or 0.0), str(choice.unit), name, source, remarks)
 
 
-def read_rotations(file: TextFile, most: int, **stated: Any) -> tuple[Array, Array]:
-    """Times [s] and rotations [rad] of a trace, at most `most` rows.
+def read_rotations(file: TextFile, limit: int, **arguments: Any) -> tuple[Array, Array]:
+    """Read times [s] and rotations [rad] of a trace, at most `limit` rows.
 
-    `stated` are arguments of `read_record` about columns, with `rotation` for the column, in `unit`, rad, deg or mrad.
+    `arguments` are those of `read_record` about columns, with `rotation` for the column, in `unit`, rad, deg or mrad.
     """
-    layout = stated_layout(("columns",), "rad", "rotation", **stated)
+    layout = stated_layout(("columns",), "rad", "rotation", **arguments)
     with file.guarded("columns"):
         table = Table(file, layout, ROTATION)
         choice = table.choice()
         table.check_stated(choice)
-        wanted = [column for column in (choice.samples, choice.time) if column is not None]
-        values, *times = table.columns(wanted, times=choice.time is not None)
-        if values.size > most:
-            raise file.error(None, f"{values.size} rows", f"at most {most}")
+        indices = [column for column in (choice.samples, choice.time) if column is not None]
+        values, *times = table.columns(indices, times=choice.time is not None)
+        if values.size > limit:
+            raise file.error(None, f"{values.size} rows", f"at most {limit}")
         if times:
             seconds = times[0] * UNITS["s"][str(choice.time_unit)]
         else:
@@ -447,7 +459,7 @@ def read_rotations(file: TextFile, most: int, **stated: Any) -> tuple[Array, Arr
 
 
 def uniform_step(table: Table, times: Array) -> float:
-    """The step [s] of times that are uniform to 2 % of a step, or as far as their last decimal says.
+    """Return the step [s] of times that are uniform to 2 % of a step, or as far as their last decimal says.
 
     The error names the first line that is not.
     """
@@ -459,8 +471,8 @@ def uniform_step(table: Table, times: Array) -> float:
     digits = 0
     while digits < 9 and not np.allclose(times * 10.0**digits, np.round(times * 10.0**digits), rtol=1e-15, atol=1e-6):
         digits += 1
-    place = 10.0**-digits  # the last decimal of the times [s]
-    rounding = 1.001 * place if place <= LARGEST_ROUNDING * step else 0.0
+    decimal = 10.0**-digits  # the last decimal of the times [s]
+    rounding = 1.001 * decimal if decimal <= LARGEST_ROUNDING * step else 0.0
     deviation = float(np.abs(times[0] + step * np.arange(times.size) - times).max())
     if not (step > 0.0 and deviation <= max(STEP_TOLERANCE * step, rounding)):
         wrong = int(np.abs(steps / middle - 1.0).argmax())
@@ -469,9 +481,9 @@ def uniform_step(table: Table, times: Array) -> float:
             "are uniform and the times are not"
         )
         raise table.error(table.line_of(wrong + 1), f"a step of {steps[wrong]:g} s", expected)
-    if deviation > 0.01 * place and place > 1e-3 * step * steps.size:
+    if deviation > 0.01 * decimal and decimal > 1e-3 * step * steps.size:
         expected = "times with more decimals, or the argument `time_step`"
-        raise table.error(table.first, f"times rounded to {place:g} s, about {step:.3g} s apart", expected)
+        raise table.error(table.first, f"times rounded to {decimal:g} s, about {step:.3g} s apart", expected)
     return float(f"{step:.12g}")  # removes the rounding of the difference
 
 

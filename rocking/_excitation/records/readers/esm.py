@@ -8,10 +8,10 @@ HEADER_LINES = 64
 
 
 def is_esm(file: TextFile) -> bool:
-    """Whether the file starts with the key EVENT_NAME and has the key SAMPLING_INTERVAL_S."""
-    return file.head[0].startswith("EVENT_NAME:") and any(
-        line.startswith("SAMPLING_INTERVAL_S:") for line in file.head[:HEADER_LINES]
-    )
+    """Return True if the file starts with the key EVENT_NAME and has the key SAMPLING_INTERVAL_S."""
+    if not file.head[0].startswith("EVENT_NAME:"):
+        return False
+    return any(line.startswith("SAMPLING_INTERVAL_S:") for line in file.head[:HEADER_LINES])
 
 
 def read(file: TextFile, layout: Layout) -> Samples:

@@ -24,10 +24,10 @@ KEYS = {
 
 
 def is_knet(file: TextFile) -> bool:
-    """Whether the keys of the first and of the fourteenth line are those of the format."""
-    return len(file.head) > HEADER_LINES and all(
-        file.head[KEYS[key]].startswith(key) for key in ("Origin Time", "Scale Factor")
-    )
+    """Return True if the first and the fourteenth line have the keys of the format."""
+    if len(file.head) <= HEADER_LINES:
+        return False
+    return all(file.head[KEYS[key]].startswith(key) for key in ("Origin Time", "Scale Factor"))
 
 
 def read(file: TextFile, layout: Layout) -> Samples:
@@ -38,13 +38,15 @@ def read(file: TextFile, layout: Layout) -> Samples:
         if len(file.head) <= HEADER_LINES or not file.head[line].startswith(key):
             raise file.error(line, "another line", f"the header line {key} of K-NET")
         texts[key] = file.head[line].removeprefix(key).strip()
-    rate_line, duration_line, scale_line = (KEYS[key] for key in ("Sampling Freq(Hz)", "Duration Time", "Scale Factor"))
-    rate = file.number(rate_line, texts["Sampling Freq(Hz)"].removesuffix("Hz"), "the sampling frequency [Hz]")
+    duration_line, scale_line = KEYS["Duration Time"], KEYS["Scale Factor"]
+    rate = file.number(
+        KEYS["Sampling Freq(Hz)"], texts["Sampling Freq(Hz)"].removesuffix("Hz"), "the sampling frequency [Hz]"
+    )
     duration = file.number(duration_line, texts["Duration Time"].removeprefix("(s)"), "the duration [s]")
-    most_text, _, rest = texts["Scale Factor"].partition("(")
-    unit_text, _, counts_text = rest.partition(")")
+    amplitude_text, _, unit_and_counts = texts["Scale Factor"].partition("(")
+    unit_text, _, counts_text = unit_and_counts.partition(")")
     scale = "a scale such as 2000(gal)/8388608"
-    most = file.number(scale_line, most_text, scale)
+    amplitude = file.number(scale_line, amplitude_text, scale)
     counts = file.number(scale_line, counts_text.strip().removeprefix("/"), scale)
     remarks: list[str] = []
     unit = layout.agreed_unit(unit_name(unit_text, "m/s2"), remarks)
@@ -54,7 +56,7 @@ def read(file: TextFile, layout: Layout) -> Samples:
     values = file.values(HEADER_LINES)
     file.line = scale_line
     with np.errstate(over="ignore", invalid="ignore"):
-        accelerations = file.checked(values * (most / counts))
+        accelerations = file.checked(values * (amplitude / counts))
     file.line = duration_line
     remarks += file.count_remarks(values, round(duration * rate), duration_line)
     offset = float(accelerations.mean())

@@ -1,4 +1,4 @@
-"""What the arguments of `read_record` state about a file, and what a reader returns."""
+"""Layout of a file, as the arguments of `read_record` state it, and the samples that a reader returns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Column = str | int
 
 
 class Samples(NamedTuple):
-    """What a reader returns: values in a unit, step [s], texts and remarks for the record."""
+    """Result of a reader: values in a unit, step [s], texts and remarks for the record."""
 
     values: Array
     step: float
@@ -46,7 +46,7 @@ class Layout:
     wrapped: bool = False
 
     def agreed_unit(self, in_file: str | None, remarks: list[str]) -> str | None:
-        """The unit that is stated, else the one in the file; a remark if they differ."""
+        """Return the unit that is stated, else the one in the file; add a remark if they differ."""
         if self.unit is None or in_file is None:
             return self.unit or in_file
         if UNITS["m/s2"][self.unit] != UNITS["m/s2"].get(in_file):
@@ -54,7 +54,7 @@ class Layout:
         return self.unit
 
     def agreed_step(self, in_file: float | None, remarks: list[str]) -> float | None:
-        """The time step [s] that is stated, else the one in the file; a remark if they differ."""
+        """Return the time step [s] that is stated, else the one in the file; add a remark if they differ."""
         if self.time_step is None or in_file is None:
             return self.time_step or in_file
         if abs(self.time_step / in_file - 1.0) > 1e-3:
@@ -76,11 +76,11 @@ class Layout:
 
 
 def stated_layout(
-    formats: tuple[str, ...], quantity: str = "m/s2", column: str = "acceleration", **stated: Any
+    formats: tuple[str, ...], quantity: str = "m/s2", column: str = "acceleration", **arguments: Any
 ) -> Layout:
-    """The checked arguments; errors name them. `column` is the argument of the column of samples, in `quantity`."""
-    samples = stated.pop(column, None)
-    layout = Layout(acceleration=samples, **stated)
+    """Check arguments; errors name them. `column` is the argument of the column of samples, in `quantity`."""
+    samples = arguments.pop(column, None)
+    layout = Layout(acceleration=samples, **arguments)
     names = {"kik-net": "K-NET"} | {name.casefold(): name for name in formats}
     if layout.time is not None and layout.time_step is not None:
         raise InvalidArgumentError("time_step", layout.time_step, "either a column of times or a time step")
@@ -118,7 +118,7 @@ def _unit(parameter: str, value: Any, quantity: str) -> str | None:
 
 
 def _delimiter(value: Any) -> str | None:
-    """Signs that separate cells, or the Fortran format of numbers of fixed width."""
+    """Return the signs that separate cells, or the Fortran format of numbers of fixed width."""
     if value is None or value in SEPARATORS:
         return value and SEPARATORS[value]
     signs = str(value).replace("\\s", " ").replace("\\t", "\t").strip("[]+")  # as pandas has them, such as \s+

@@ -51,13 +51,13 @@ class FilePreview:
     missing: tuple[str, ...] = ()
 
 
-def preview_record(content: bytes, name: str, *, stop: StopFlag | None = None, **stated: Any) -> FilePreview:
-    """What a file holds, as far as the arguments of `read_record` say how it is laid out.
+def preview_record(content: bytes, name: str, *, stop: StopFlag | None = None, **arguments: Any) -> FilePreview:
+    """Describe the content of a file, as far as the arguments of `read_record` say how it is laid out.
 
     Raises `InvalidArgumentError` for an argument that is out of range, and `RecordFileError` for a file without text.
     What is wrong with the rows is the business of `parse_record`.
     """
-    layout = stated_layout(FORMATS, **stated)
+    layout = stated_layout(FORMATS, **arguments)
     kind = layout.format or seismic.format_of(content)
     if kind in ("SAC", "miniSEED"):
         return FilePreview(kind, None, [], _traces(content, name, kind))
@@ -107,7 +107,7 @@ def _traces(content: bytes, name: str, kind: str) -> list[str]:
 
 
 def _lines(file: TextFile, layout: Layout, table: Table | None) -> list[PreviewLine]:
-    """The first lines of a file, and those around the first row."""
+    """Return the first lines of a file, and those around the first row."""
     start = layout.skip if table is None else table.first
     lines = []
     for k, text in file.lines(0):
@@ -120,6 +120,6 @@ def _lines(file: TextFile, layout: Layout, table: Table | None) -> list[PreviewL
             cells = [cell.text for cell in table.header]
         elif table is not None and k >= table.first and text.strip():
             cells = table.cells_of(text)
-        shown = [cell[:SHOWN_SIGNS] for cell in cells[:SHOWN_CELLS]]
-        lines.append(PreviewLine(k + 1, text[:SHOWN_SIGNS], shown))
+        short_cells = [cell[:SHOWN_SIGNS] for cell in cells[:SHOWN_CELLS]]
+        lines.append(PreviewLine(k + 1, text[:SHOWN_SIGNS], short_cells))
     return lines

@@ -82,7 +82,7 @@ def read_record(
     vertical: Column | PathLike[str] | None = None,
     allow_unusual: bool = False,
 ) -> Record:
-    """A record of ground acceleration from a file in a named format, or in columns whose layout is stated.
+    """Read a record of ground acceleration from a file in a named format, or in columns whose layout is stated.
 
     Nothing is recognised by its looks: a format is stated, or has a signature that it prescribes; columns are stated,
     or have the names `time` and `acceleration` (`acc`, `accel`) with units in brackets, such as
@@ -134,7 +134,7 @@ def read_record(
         If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
     content, name = read_content("file", file), Path(file).name
-    stated: dict[str, Any] = {
+    arguments: dict[str, Any] = {
         "format": format,
         "acceleration": acceleration,
         "time": time,
@@ -148,14 +148,14 @@ def read_record(
         "allow_unusual": allow_unusual,
     }
     if isinstance(vertical, PathLike) or (isinstance(vertical, str) and Path(vertical).is_file()):
-        record = parse_record(content, name, **stated)
-        upwards = parse_record(read_content("vertical", vertical), Path(vertical).name, **stated)
+        record = parse_record(content, name, **arguments)
+        upwards = parse_record(read_content("vertical", vertical), Path(vertical).name, **arguments)
         return with_vertical(record, upwards)
-    return parse_record(content, name, **stated, vertical=vertical)
+    return parse_record(content, name, **arguments, vertical=vertical)
 
 
 def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
-    """The bytes of a file, one more than is allowed at most; an argument of this name if it cannot be read."""
+    """Read the bytes of a file, one more than is allowed at most; an argument of this name if it cannot be read."""
     try:
         with Path(path).open("rb") as stream:
             return stream.read(MAX_BYTES + 1)
@@ -170,19 +170,19 @@ def parse_record(
     vertical: Column | None = None,
     allow_unusual: bool = False,
     stop: StopFlag | None = None,
-    **stated: Any,
+    **arguments: Any,
 ) -> Record:
     """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
 
-    `stated` are the other arguments of `read_record`; `vertical` is a column or channel of this file. `stop` cancels
+    `arguments` are the others of `read_record`; `vertical` is a column or channel of this file. `stop` cancels
     the work, which then raises `StoppedError`. Errors as for `read_record`.
     """
-    layout = stated_layout(FORMATS, **stated)
+    layout = stated_layout(FORMATS, **arguments)
     if len(content) > MAX_BYTES:
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     record = _record(content, name, layout, stop)
     if vertical is not None:
-        upwards = stated_layout(FORMATS, **{**stated, "acceleration": vertical})
+        upwards = stated_layout(FORMATS, **{**arguments, "acceleration": vertical})
         try:
             record = with_vertical(record, _record(content, name, upwards, stop))
         except RecordFileError as error:
@@ -193,7 +193,7 @@ def parse_record(
 
 
 def _record(content: bytes, name: str, layout: Layout, stop: StopFlag | None) -> Record:
-    """One component."""
+    """Read one component."""
     kind = layout.format or seismic.format_of(content)
     if kind in seismic.NAMES:
         file = TextFile(name, b"a", stop)  # for messages
@@ -219,8 +219,7 @@ def text_format_of(file: TextFile) -> str:
 
 
 def _as_record(samples: Samples) -> Record:
-    texts = samples.name, samples.source, tuple(samples.remarks)
-    return Record(samples.values, samples.step, samples.unit, *texts)
+    return Record(samples.values, samples.step, samples.unit, samples.name, samples.source, samples.remarks)
 
 
 def _check_usual(record: Record, name: str) -> None:
@@ -237,14 +236,14 @@ def _check_usual(record: Record, name: str) -> None:
             f"at most {MAX_USUAL_PGV:g} m/s without an offset of the acceleration",
         ),
     ]
-    for unusual, found, limit in questions:
+    for unusual, description, limit in questions:
         if unusual:
             expected = f"{limit}, in the units and columns stated; or `allow_unusual=True`, if it is right"
-            raise RecordFileError(name, None, found, expected)
+            raise RecordFileError(name, None, description, expected)
 
 
 def with_vertical(record: Record, upwards: Record) -> Record:
-    """A record with another one as its vertical component; `InvalidArgumentError` if step or length differ."""
+    """Add another record as the vertical component; raise `InvalidArgumentError` if step or length differ."""
     shift = abs(upwards.time_step / record.time_step - 1.0) * min(record.samples, upwards.samples)
     if shift > MAX_SHIFT:
         allowed = f"a component with the step of the horizontal one, {record.time_step:g} s"

@@ -20,15 +20,15 @@ NAMES = {"SAC": "SAC", "miniSEED": "MSEED", "TSPAIR": "TSPAIR", "SLIST": "SLIST"
 
 
 def format_of(content: bytes) -> str | None:
-    """The format of the signature; None for other files."""
+    """Return the format of the signature; None for other files."""
     mini_seed = len(content) > 48 and content[:6].isdigit() and content[6:7] in b"DRQM" and content[7:8] in b" \0"
     if mini_seed or content[:3] == b"MS\x03":
         return "miniSEED"
     if content.startswith(b"TIMESERIES "):
         words = content[:500].partition(b"\n")[0].upper()
         return next((name for name in ("TSPAIR", "SLIST") if name.encode() in words), None)
-    place = slice(SAC_VERSION_PLACE, SAC_VERSION_PLACE + 4)
-    if len(content) >= 632 and any(struct.unpack(order + "i", content[place])[0] in SAC_VERSIONS for order in "<>"):
+    version = slice(SAC_VERSION_PLACE, SAC_VERSION_PLACE + 4)
+    if len(content) >= 632 and any(struct.unpack(order + "i", content[version])[0] in SAC_VERSIONS for order in "<>"):
         return "SAC"
     return None
 
@@ -79,11 +79,13 @@ def _check_unit(name: str, text: str) -> None:
 
 
 def _chosen(name: str, layout: Layout, traces: list[Any]) -> Any:
-    """The trace of a number, an identifier or the code of its channel."""
-    stated = layout.acceleration
-    if stated is None and len(traces) == 1:
+    """Return the trace of a number, an identifier or the code of its channel."""
+    name_or_number = layout.acceleration
+    if name_or_number is None and len(traces) == 1:
         return traces[0]
-    matching = [trace for k, trace in enumerate(traces) if str(stated) in (str(k + 1), trace.id, trace.stats.channel)]
+    matching = [
+        trace for k, trace in enumerate(traces) if str(name_or_number) in (str(k + 1), trace.id, trace.stats.channel)
+    ]
     if len(matching) != 1:
         identifiers = ", ".join(trace.id for trace in traces)
         raise RecordFileError(name, None, f"traces {identifiers}", "the argument `acceleration`: one of them")

@@ -80,7 +80,7 @@ class TextFile:
         return [line for _, line in islice(self.lines(0), HEAD_LINES)]
 
     def lines(self, first: int) -> Iterator[tuple[int, str]]:
-        """Index and text of the lines from `first` on, without their ends."""
+        """Yield index and text of the lines from `first` on, without their ends."""
         for k, line in enumerate(io.BytesIO(self.content)):
             if self.stop is not None and k % LINES_BETWEEN_CHECKS == 0:
                 self.stop.check()
@@ -91,11 +91,11 @@ class TextFile:
                 yield k, line.decode().removesuffix("\n")
 
     def error(self, line: int | None, found: object, expected: str) -> RecordFileError:
-        """The error for a line, or for the whole file."""
+        """Return the error for a line, or for the whole file."""
         return RecordFileError(self.name, None if line is None else line + 1, found, expected)
 
     def number(self, line: int, text: str, expected: str) -> float:
-        """One finite number > 0 from a text of a line."""
+        """Read one finite number > 0 from a text of a line."""
         try:
             (value,) = numbers([text.strip()])
         except ValueError:
@@ -104,28 +104,28 @@ class TextFile:
             raise self.error(line, text.strip() or "nothing", f"{expected}, a number above 0")
         return value
 
-    def size(self, line: int, text: str, expected: str, most: int = MAX_SAMPLES) -> int:
-        """One integer > 0 from a text of a line, at most the number of bytes of the file."""
+    def size(self, line: int, text: str, expected: str, limit: int = MAX_SAMPLES) -> int:
+        """Read one integer > 0 from a text of a line, at most the number of bytes of the file."""
         value = self.number(line, text, expected)
-        most = min(most, len(self.content))
-        if value > most or value != int(value):
-            raise self.error(line, text.strip(), f"{expected}, an integer up to {most} in a file of this size")
+        limit = min(limit, len(self.content))
+        if value > limit or value != int(value):
+            raise self.error(line, text.strip(), f"{expected}, an integer up to {limit} in a file of this size")
         return int(value)
 
     def values(self, first: int) -> Array:
-        """All numbers from a line on, any number on each line; blank lines only at the start."""
-        found = array("d")
+        """Read all numbers from a line on, any number on each line; blank lines only at the start."""
+        values = array("d")
         for k, line in self.lines(first):
             cells = line.split()
-            if not cells and found:
+            if not cells and values:
                 raise self.error(k, "a blank line", "acceleration values up to the end of the file")
-            found.extend(self.line_of_numbers(k, cells))
-            if len(found) > MAX_SAMPLES:
+            values.extend(self.line_of_numbers(k, cells))
+            if len(values) > MAX_SAMPLES:
                 raise self.error(k, f"more than {MAX_SAMPLES} values", "a record of one component")
-        return self.checked(np.frombuffer(found))
+        return self.checked(np.frombuffer(values))
 
     def line_of_numbers(self, line: int, cells: list[str]) -> list[float]:
-        """The numbers in the cells of a line."""
+        """Read the numbers in the cells of a line."""
         try:
             return numbers(cells)
         except ValueError:
@@ -133,20 +133,20 @@ class TextFile:
             raise self.error(line, wrong.strip() or "an empty cell", "a number") from None
 
     def checked(self, values: Array) -> Array:
-        """The values, if there are two or more and none is beyond the range of doubles."""
+        """Return the values if there are two or more and all are in the range of doubles."""
         if values.size < 2:
             raise self.error(None, f"{values.size} acceleration values", "at least 2")
         if not np.isfinite(values).all():
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
         return values
 
-    def count_remarks(self, values: Array, stated: int, line: int) -> list[str]:
-        """The remark on a number of values that differs from the stated one as much as headers usually do."""
-        difference = abs(values.size - stated)
-        if difference > COUNT_DIFFERENCE * stated:
+    def count_remarks(self, values: Array, count: int, line: int) -> list[str]:
+        """Return a remark where the number of values differs from the stated one as much as headers usually do."""
+        difference = abs(values.size - count)
+        if difference > COUNT_DIFFERENCE * count:
             expected = 'equal numbers; or `format="columns"`, if the numbers are laid out in another way'
-            raise self.error(line, f"{stated} stated, {values.size} values in the file", expected)
-        return [f"the file holds {values.size} samples, its header states {stated}"] if difference else []
+            raise self.error(line, f"{count} stated, {values.size} values in the file", expected)
+        return [f"the file holds {values.size} samples, its header states {count}"] if difference else []
 
     def check_words(self, line: int, text: str) -> None:
         """Refuse a title of velocities, displacements, counts or a spectrum."""
@@ -154,7 +154,7 @@ class TextFile:
             raise self.other_quantity(line, text.strip())
 
     def other_quantity(self, line: int | None, text: str) -> RecordFileError:
-        """The error about a title or a name of another quantity."""
+        """Return the error about a title or a name of another quantity."""
         return self.error(line, text, 'accelerations; or `format="columns"` with `unit`, if they are')
 
     @contextmanager
@@ -170,12 +170,12 @@ class TextFile:
         except RockingError:
             raise
         except (ValueError, IndexError, KeyError, ArithmeticError, MemoryError, StopIteration, RuntimeError) as error:
-            found = f"{type(error).__name__}: {error}".strip(": ")
-            raise self.error(self.line, found, f"the layout of {kind}") from None
+            description = f"{type(error).__name__}: {error}".strip(": ")
+            raise self.error(self.line, description, f"the layout of {kind}") from None
 
 
 def numbers(cells: list[str]) -> list[float]:
-    """Numbers as C and Fortran write them, and no others that Python reads; `ValueError` for any other text."""
+    """Read numbers as C and Fortran write them, and no others that Python reads; `ValueError` for any other text."""
     if not _OF_NUMBERS.issuperset("".join(cells)):
         raise ValueError("not only numbers")
     try:
@@ -191,7 +191,7 @@ def says_other_quantity(text: str) -> bool:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell is a number."""
+    """Return True if a cell is a number."""
     try:
         numbers([cell])
     except ValueError:
@@ -200,15 +200,15 @@ def is_number(cell: str) -> bool:
 
 
 def fortran_widths(text: str) -> tuple[int, int] | None:
-    """Number of values on a line and characters of each in a format such as `8f10.6` or `(5E15.7)`.
+    """Return the number of values on a line and characters of each in a format such as `8f10.6` or `(5E15.7)`.
 
     None for other texts. Raises `ValueError` for a width that is not 1 to `MAX_WIDTH`.
     """
     plain = text.strip().strip("()").lower()
     for letter in "efgi":
-        count, found, width = plain.partition(letter)
+        count, letter_in_text, width = plain.partition(letter)
         width = width.partition(".")[0]
-        if found and (count or "1").isdecimal() and width.isdecimal():
+        if letter_in_text and (count or "1").isdecimal() and width.isdecimal():
             if not (len(count) < 4 and len(width) < 4 and 1 <= int(width) <= MAX_WIDTH and int(count or 1) > 0):
                 raise ValueError(f"a width of 1 to {MAX_WIDTH} characters in {text.strip()[:40]}")
             return int(count or 1), int(width)

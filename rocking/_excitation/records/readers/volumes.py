@@ -35,17 +35,17 @@ class Channel:
 
 
 def is_cosmos(file: TextFile) -> bool:
-    """Whether the first line states the format, such as `(Format v01.20 with 13 text lines)`."""
+    """Return True if the first line states the format, such as `(Format v01.20 with 13 text lines)`."""
     return "(format v" in file.head[0].lower()
 
 
 def is_csmip(file: TextFile) -> bool:
-    """Whether the first line starts with the name of Volume 1 or 2."""
+    """Return True if the first line starts with the name of Volume 1 or 2."""
     return file.head[0].lower().split()[:2] in (["corrected", "accelerogram"], ["uncorrected", "accelerogram"])
 
 
 def is_geonet(file: TextFile) -> bool:
-    """Whether the first line is that of an accelerogram of GNS Science."""
+    """Return True if the first line is that of an accelerogram of GNS Science."""
     words = file.head[0].lower().split()
     return words[1:2] == ["accelerogram"] and not {"gns", "geonet"}.isdisjoint(words)
 
@@ -102,7 +102,7 @@ def _read(
 
 
 def _chosen(file: TextFile, layout: Layout, channels: list[Channel], kind: str) -> Channel:
-    """The channel of a number, a name such as `Chan 1: 90 Deg`, or its part behind the colon."""
+    """Return the channel of a number, a name such as `Chan 1: 90 Deg`, or its part behind the colon."""
     if not channels:
         raise file.error(0, "no block of accelerations", f"a Volume 1 or 2 of {kind}; others are not read")
     if layout.acceleration is None:
@@ -110,12 +110,12 @@ def _chosen(file: TextFile, layout: Layout, channels: list[Channel], kind: str) 
             return channels[0]
         names = ", ".join(channel.name for channel in channels)
         raise file.error(None, f"channels {names}", "the argument `acceleration`: one of them")
-    stated = str(layout.acceleration).strip().casefold()
-    matching = [
-        channel
-        for channel in channels
-        if stated in (channel.number, channel.name.casefold(), channel.name.casefold().partition(": ")[2])
-    ]
+    name_or_number = str(layout.acceleration).strip().casefold()
+    matching = []
+    for channel in channels:
+        name = channel.name.casefold()
+        if name_or_number in (channel.number, name, name.partition(": ")[2]):
+            matching.append(channel)
     if len(matching) != 1:
         names = ", ".join(channel.name for channel in channels)
         raise file.error(None, f"channels {names}", f"one of them, not {layout.acceleration}, for `acceleration`")
@@ -123,7 +123,7 @@ def _chosen(file: TextFile, layout: Layout, channels: list[Channel], kind: str) 
 
 
 def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
-    """The blocks of accelerations of COSMOS and CSMIP."""
+    """Yield the blocks of accelerations of COSMOS and CSMIP."""
     name = ""
     number = ""
     reals = np.zeros(0)
@@ -150,7 +150,7 @@ def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
 
 
 def _kind(words: list[str]) -> str | None:
-    """The quantity of the block below a line such as `40 acceleration pts` or `40 points of accel data`."""
+    """Return the quantity of the block below a line such as `40 acceleration pts` or `40 points of accel data`."""
     if not words or not words[0].isdecimal():
         return None
     named = words[3:4] if words[1:3] == ["points", "of"] else words[1:2]
@@ -158,7 +158,7 @@ def _kind(words: list[str]) -> str | None:
 
 
 def _after(words: list[str], *keys: str) -> str:
-    """The word behind the first of the keys that is there, but for small words between."""
+    """Return the word behind the first of the keys that is there, but for small words between."""
     plain = [word.rstrip(":") for word in words]
     for key in keys:
         if key in plain:
@@ -168,7 +168,7 @@ def _after(words: list[str], *keys: str) -> str:
 
 
 def _step(words: list[str], reals: Array) -> float | None:
-    """The time step [s] that the line above a block states; of COSMOS, real value 62 or 34 that fits the length."""
+    """Return the time step [s] stated above a block; of COSMOS, real value 62 or 34 that fits the length."""
     if "at" in words:
         text, unit = words[words.index("at") + 1 :][:2]
         (value,) = numbers([text])
@@ -179,22 +179,26 @@ def _step(words: list[str], reals: Array) -> float | None:
     if "approx" not in words:
         return None
     count, seconds = numbers([words[0], words[words.index("approx") + 1]])
-    for place, factor in ((61, 1e-3), (33, 1.0)):
-        step = reals[place] * factor if reals.size > place else -1.0
+    for index, factor in ((61, 1e-3), (33, 1.0)):
+        step = reals[index] * factor if reals.size > index else -1.0
         if step > 0.0 and abs(count * step - seconds) <= 1.0 + 0.01 * seconds:
             return float(step)
     return None
 
 
 def _block(file: TextFile, line: int, lines: Lines, count: str, format_line: str) -> Array:
-    """The numbers below a line that states how many they are, and perhaps a Fortran format."""
-    parts = (fortran_widths(part.partition(")")[0]) for part in format_line.split("(")[1:])
-    width = next((found[1] for found in parts if found), None)
+    """Read the numbers below a line that states how many they are, and perhaps a Fortran format."""
+    width = None
+    for part in format_line.split("(")[1:]:
+        widths = fortran_widths(part.partition(")")[0])
+        if widths is not None:
+            width = widths[1]
+            break
     return _numbers(file, line, lines, file.size(line, count, "the number of values"), width)
 
 
 def _numbers(file: TextFile, line: int, lines: Lines, count: int, width: int | None) -> Array:
-    """As many numbers from the next lines."""
+    """Read as many numbers from the next lines."""
     values: list[float] = []
     while len(values) < count:
         k, text = next(lines, (line, ""))
@@ -207,7 +211,7 @@ def _numbers(file: TextFile, line: int, lines: Lines, count: int, width: int | N
 
 
 def _row(file: TextFile, index: int, line: str, width: int | None) -> list[float]:
-    """The numbers of a line: separated by blanks, or of a width, right-justified, where they may touch."""
+    """Read the numbers of a line: separated by blanks, or of a width, right-justified, where they may touch."""
     cells = line.split()
     if width is not None and not all("." in cell and is_number(cell) for cell in cells):
         cells = [line[k : k + width].strip() for k in range(0, len(line.rstrip()), width)]
@@ -215,19 +219,22 @@ def _row(file: TextFile, index: int, line: str, width: int | None) -> list[float
 
 
 def _geonet(file: TextFile, lines: Lines) -> Iterator[Channel]:
-    """The components of GeoNet: 16 lines of text, 4 of integers, 6 of reals, then three blocks in mm and s."""
+    """Yield the components of GeoNet: 16 lines of text, 4 of integers, 6 of reals, then three blocks in mm and s."""
     position = 0
     for k, first in lines:
         if not first.strip():
             continue
         text = [first, *(next(lines)[1] for _ in range(15))]
-        integers = [value for _ in range(4) for value in _row(file, *next(lines), 8)]
-        reals = [value for _ in range(6) for value in _row(file, *next(lines), 8)]
-        stated = [word for word in text[10].split() if is_number(word)]
-        if "units of" in text[10] and float(stated[0]) != 1.0:
+        integers, reals = [], []
+        for _ in range(4):
+            integers += _row(file, *next(lines), 8)
+        for _ in range(6):
+            reals += _row(file, *next(lines), 8)
+        numbers_in_text = [word for word in text[10].split() if is_number(word)]
+        if "units of" in text[10] and float(numbers_in_text[0]) != 1.0:
             raise file.error(k + 10, text[10].strip(), "readings in units of 1.00 mm/s/s")
         step = reals[25]
-        if not stated or not 0.0 < step < np.inf or abs(step / float(stated[-1]) - 1.0) > 1e-3:
+        if not numbers_in_text or not 0.0 < step < np.inf or abs(step / float(numbers_in_text[-1]) - 1.0) > 1e-3:
             raise file.error(k + 10, text[10].strip(), f"an interval of {step:g} s, as the numbers of the header say")
         counts = [int(value) for value in integers[33:36]]
         if counts != integers[33:36] or counts[0] < 2 or max(counts) > len(file.content):
