@@ -180,7 +180,7 @@ BODIES = [
     ),
     (BLOCKS, json_of(pulse="sine", blocks=[{"width": 2}]), JSON, "blocks[0].peak_acceleration"),
     (BLOCKS + "?pulse=sine", TABLE.replace("[cm]", ""), CSV, "blocks, row 2, height"),
-    (BLOCKS + "?pulse=sine", TABLE.replace("[cm]", "[kg]"), CSV, "blocks, header"),
+    (BLOCKS + "?pulse=sine", TABLE.replace("[cm]", "[kg]"), CSV, "blocks, line 1"),
     (BLOCKS + "?pulse=sine", TABLE.replace("80", "tall"), CSV, "blocks, row 2, height"),
     (BLOCKS + "?pulse=sine", TABLE.replace("0.2,", "1e9,"), CSV, "blocks, row 2, width"),
     *((RESPONSE + "&unit=g", body, CSV, "record") for body in ("\0\1\2", "<html>", "{}", "1\n2\n", "a,b\n1,2\n")),
@@ -249,7 +249,8 @@ def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client):
         (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
         (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
     ):
-        problem = assert_problem(post(client, BLOCKS, body, CSV, pulse="sine"), 422, f"blocks, line {line}")
+        problem = assert_problem(post(client, BLOCKS, body, CSV, pulse="sine"), 422, "blocks")
+        assert problem["detail"].startswith(f"blocks, line {line}:")
         assert reason in problem["value"]
 
 
