@@ -1,7 +1,7 @@
 """An archive of a results folder for a data repository: `python -m workflow.deposit [FOLDER]`, or `make deposit`.
 
-FOLDER contains `results`, which must be as its manifest states. The zip file holds the products but the zarr stores,
-which repeat the cubes, and the STAC catalogue, which describes them; checksums, a
+FOLDER contains `results`, which must be as its manifest states. The zip file holds the products but for the zarr
+stores, which repeat the cubes, and the STAC catalogue, which describes them. Beside them it holds checksums, a
 description of DataCite, the licence of the data, a page for readers, and a script that verifies the files without this
 package. Equal products give equal bytes of the archive in the same year.
 """
@@ -82,7 +82,7 @@ def files(folder: Path) -> Iterator[tuple[str, bytes | Path]]:
         "LICENSE.txt": TEXTS / "LICENSE.txt",
         "verify.py": TEXTS / "verify.py",
         "datacite.json": (json.dumps(about, indent=2) + "\n").encode(),
-        **{f"reference-problems/{path.name}": path for path in sorted(PROBLEMS.glob("*.json"))},
+        **{f"reference-problems/{path.name}": path for path in sorted(PROBLEMS.iterdir())},
         "data/manifest.json": folder / MANIFEST,
         **{f"data/{name}": folder / "results" / name for name in products},
     }
