@@ -68,9 +68,10 @@ class RecordFiles:
 
     def paths(self) -> list[Path]:
         """Return the files, at least one, in the order of their names."""
-        paths = []
-        if self.pattern:
+        try:
             paths = sorted(path for path in self.folder.glob(self.pattern) if path.is_file())
+        except (NotImplementedError, ValueError):  # the pattern is a path from the root, or empty
+            paths = []
         if not paths:
             raise InvalidArgumentError(
                 "records",

@@ -173,6 +173,7 @@ def test_a_file_in_place_of_printing(small, tmp_path):
         ({"measure": "sa"}, "measure = 'sa' is not allowed"),
         ({"colour": 1}, "unknown colour"),
         ({"blocks": []}, "blocks"),
+        ({"records": {"folder": ".", "pattern": "/*.csv", "unit": "m/s2"}}, "there is none"),
     ],
 )
 def test_invalid_configuration_names_the_key(small, tmp_path, change, message):
