@@ -43,5 +43,5 @@ def test_every_claim_has_a_verdict() -> None:
         assert verdicts[key] == "identity"
     for key in ("curve-case-2", "curve-case-1.2", "curve-case-1.1", "no-real-root", "slender-limit"):
         assert verdicts[key] == "holds"
-    for key in ("complete", "limit-0.4", "minima-coincide", "no-case-1.1-above-5"):
+    for key in ("complete", "limit-0.4", "plots-agree", "no-case-1.1-above-5"):
         assert verdicts[key] == "holds within stated range"
