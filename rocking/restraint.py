@@ -79,8 +79,8 @@ def direct_groups(
 ) -> tuple[Array, Array]:
     """Amplitude a/(1 + sigma) and frequency ratio omega/lambda of the free block that overturns under the same pulses.
 
-    That is without impact: a |integral of f exp(-lambda (tau - tau0))| >= (1 + sigma)/lambda from uplift tau0 on is the
-    condition of this free block, with lambda tau in place of tau.
+    That is without impact: a abs(integral of f exp(-lambda (tau - tau0))) >= (1 + sigma)/lambda from uplift tau0 on is
+    the condition of this free block, with lambda tau in place of tau.
     """
     sigma = PRESTRESS.convert(prestress)
     a, omega = checked(amplitude=amplitude, frequency_ratio=ANY_FREQUENCY_RATIO.convert(frequency_ratio))
@@ -272,8 +272,8 @@ def margin_after_one_impact(
 ) -> Array:
     """Margin of overturning after the first impact, within the pulse or after it [-]; positive where it overturns.
 
-    lambda/(1 + sigma) (eta |y'| - a integral of f exp(-lambda (tau - tau1))) - 1 with y' just before the impact; (3.20)
-    and (3.17) of a restrained block. nan where there is no impact.
+    lambda/(1 + sigma) (eta abs(y') - a integral of f exp(-lambda (tau - tau1))) - 1 with y' just before the impact;
+    (3.20) and (3.17) of a restrained block. nan where there is no impact.
     """
     omega, zeta, factor = _reduced(frequency_ratio, stiffness, prestress, damping)
     a, eta = checked(amplitude=amplitude, restitution=restitution)
