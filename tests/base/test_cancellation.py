@@ -22,8 +22,8 @@ MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
 
 ELASTIC = {"frequency_ratio": 0.05, "restitution": 1.0}
 
-SOON = 0.3
-"""Processor time of all threads within which the work ends [s]; 0.11 and 0.16 s were seen beside other work."""
+SOON = 0.1
+"""Processor time within which the work ends [s]; it is a few milliseconds on an idle machine."""
 
 AXES = {"slenderness": MANY[:40], "frequency_ratio": np.linspace(0.04, 0.05, 40)}
 
@@ -69,8 +69,8 @@ def _loaded():
     rocking.peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
 
 
-@pytest.mark.parametrize("name", WORK)
-def test_work_ends_soon_after_cancellation(name):
+def time_to_stop(name):
+    """Processor time of all threads from the flag to the end of the work [s]."""
     stop, ended = StopFlag(), []
 
     def work():
@@ -87,7 +87,13 @@ def test_work_ends_soon_after_cancellation(name):
     stop.set()
     thread.join(30)
     assert ended, "it went on to its end"
-    assert ended[0] - start < SOON
+    return ended[0] - start
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_work_ends_soon_after_cancellation(name):
+    # the clock counts the other threads of the process, too: the least of three attempts is that of the work
+    assert any(time_to_stop(name) < SOON for _ in range(3))
 
 
 MOTION, BLOCK, LEVELS = noise(1), rocking.Block(0.4, 1.6), {"intensity": [3.0, 6.0]}
